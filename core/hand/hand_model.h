@@ -1,0 +1,73 @@
+#pragma once
+
+/// The hand as data: links, joints, fingers. Immutable once loaded. Nothing here knows which hand it is
+/// or how many fingers it has; `LoadHand` (urdf.h) makes one from files and checks it.
+
+#include <string>
+#include <vector>
+
+#include "core/common/frames.h"
+#include "core/common/limits.h"
+
+namespace regrasp {
+
+/// Collision shape of a link, in the link frame. A capsule: all points within `radius` of the segment a-b
+/// (a == b makes a sphere); or a box.
+struct Shape {
+  enum class Kind { kCapsule, kBox };
+  Kind kind = Kind::kCapsule;
+  Vector3d a_L = Vector3d::Zero();         ///< capsule segment start [m]
+  Vector3d b_L = Vector3d::Zero();         ///< capsule segment end [m]
+  double radius = 0;                       ///< capsule [m]
+  Isometry3d X_LB = Isometry3d::Identity();  ///< box centre frame
+  Vector3d half_extents = Vector3d::Zero();  ///< box [m]
+};
+
+struct Link {
+  std::string name;
+  int parent_joint = -1;                ///< the joint that moves it; -1 for the palm
+  double mass = 0;                      ///< [kg]
+  Vector3d p_LCom = Vector3d::Zero();   ///< centre of mass in the link frame [m]
+  Matrix3d I_LCom = Matrix3d::Zero();   ///< inertia about the centre of mass, link axes [kg m²]
+  std::vector<Shape> shapes;
+};
+
+/// A revolute joint. The child link's frame has its origin at the joint: X_PL(q) = X_PJ * Rot(axis_J, q).
+struct Joint {
+  std::string name;
+  int parent_link = -1;
+  int child_link = -1;
+  Isometry3d X_PJ = Isometry3d::Identity();  ///< joint frame in the parent link's frame
+  Vector3d axis_J = Vector3d::UnitX();       ///< unit axis in the joint frame
+  double lower = 0, upper = 0;               ///< limits [rad], lower < upper
+  double effort = 0;                         ///< largest torque of the drive [N m]
+  double damping = 0;                        ///< viscous damping of joint and gear [N m s/rad]
+  double armature = 0;                       ///< inertia of the rotor reflected to the joint [kg m²]
+};
+
+/// One finger: a chain from the palm to a tip.
+struct Finger {
+  std::string name;                ///< as users type it, e.g. "ring"
+  std::vector<int> joints;         ///< joint indices, root to tip
+  int tip_link = -1;               ///< the link that carries the fingertip
+  Vector3d p_LF = Vector3d::Zero();  ///< centre of the tip's rounding sphere in the tip link's frame [m]
+  double tip_radius = 0;           ///< [m]
+};
+
+struct HandModel {
+  std::string name;
+  std::vector<Link> links;    ///< links[0] is the palm, fixed to the world; parents before children
+  std::vector<Joint> joints;  ///< parents before children
+  std::vector<Finger> fingers;
+
+  int num_joints() const { return static_cast<int>(joints.size()); }
+  int num_fingers() const { return static_cast<int>(fingers.size()); }
+  /// Index of the finger with this name, or -1.
+  int FindFinger(const std::string& finger_name) const {
+    for (int i = 0; i < num_fingers(); ++i)
+      if (fingers[i].name == finger_name) return i;
+    return -1;
+  }
+};
+
+}  // namespace regrasp

@@ -1,0 +1,37 @@
+#pragma once
+
+/// Forward kinematics and Jacobians of the fingers. algorithm(model, data): the model never changes, the
+/// data is preallocated.
+
+#include <array>
+
+#include "core/common/frames.h"
+#include "core/common/limits.h"
+#include "core/hand/hand_model.h"
+
+namespace regrasp {
+
+/// What forward kinematics computes from joint angles.
+struct KinematicsData {
+  std::array<Isometry3d, kMaxLinks> X_WL{};      ///< pose of every link
+  std::array<Vector3d, kMaxJoints> axis_W{};     ///< unit axis of every joint
+  std::array<Vector3d, kMaxJoints> p_WJ{};       ///< a point on the axis of every joint: its origin [m]
+};
+
+/// Fills `data` for the joint angles `q` [rad, model order].
+void ForwardKinematics(const HandModel& model, const JointVector& q, KinematicsData* data);
+
+/// Centre of the fingertip's rounding sphere in W [m].
+Vector3d FingertipCentre(const HandModel& model, const KinematicsData& data, int finger);
+
+/// Translational Jacobian of the point `p_WQ` [m] that moves with the finger's tip link: 3 x n, columns
+/// root to tip: v_WQ = J qdot_finger, [m/s] per [rad/s].
+FingerJacobian PointJacobian(const HandModel& model, const KinematicsData& data, int finger,
+                             const Vector3d& p_WQ);
+
+/// Joint torques [N m, model order] that hold the links against gravity `gravity_W` [m/s²]:
+/// tau_i = - sum over links moved by i of axis_i . ((p_com - p_i) x m g).
+JointVector GravityTorque(const HandModel& model, const KinematicsData& data,
+                          const Vector3d& gravity_W);
+
+}  // namespace regrasp

@@ -1,0 +1,27 @@
+#pragma once
+
+/// The object in the hand, as the simulator knows it. The controller never sees this type.
+
+#include <string>
+#include <vector>
+
+#include "core/common/frames.h"
+
+namespace regrasp {
+
+struct ObjectModel {
+  enum class Kind { kSphere, kBox, kCapsule, kMesh };
+  std::string name;
+  Kind kind = Kind::kSphere;
+  double radius = 0.025;                     ///< sphere, capsule [m]
+  double half_length = 0;                    ///< capsule: half the segment along z [m]
+  Vector3d half_extents = Vector3d::Zero();  ///< box [m]
+  std::vector<Vector3d> vertices_O;          ///< mesh [m]
+  std::vector<Eigen::Vector3i> triangles;    ///< mesh, counter-clockwise seen from outside
+  double mass = 0.08;                        ///< [kg]
+  Matrix3d I_OCom = Matrix3d::Zero();        ///< inertia about the origin, which is the centre of mass [kg m²]
+  double friction = 0.8;                     ///< Coulomb coefficient of every contact, (0, 1]
+  double bounding_radius = 0.025;            ///< farthest surface point from the origin [m]
+};
+
+}  // namespace regrasp

@@ -1,0 +1,32 @@
+#pragma once
+
+/// Noise levels of the sensors and their presets. White noise at 1 kHz. The paper gives no numbers
+/// ("standard deviations following the real tactile sensor"): these presets are ours.
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace regrasp {
+
+struct NoiseLevels {
+  double position_m = 0;             ///< contact position, per axis
+  double normal_rad = 0;             ///< contact normal, per tangent axis
+  double force_n = 0;                ///< normal force
+  double joint_rad = 0;              ///< joint angle
+  double object_position_m = 0;      ///< object position, per axis
+  double object_rotation_rad = 0;    ///< object orientation, per axis
+  double taxel_pitch_m = 0;          ///< > 0: contact position and normal snap to taxels this far apart
+  double object_rate_hz = 0;         ///< > 0: the object pose is sampled and held at this rate
+  int object_delay_frames = 0;       ///< frames at object_rate_hz by which the pose is late
+  bool operator==(const NoiseLevels&) const = default;
+};
+
+/// Names in increasing order of noise: off, fine, paper, coarse, taxel.
+std::span<const std::string_view> NoisePresetNames();
+/// The preset with this name, or nothing.
+std::optional<NoiseLevels> NoisePreset(std::string_view name);
+/// Name of the preset equal to `levels`, or "custom".
+std::string_view NoiseName(const NoiseLevels& levels);
+
+}  // namespace regrasp

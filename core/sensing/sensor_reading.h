@@ -1,0 +1,29 @@
+#pragma once
+
+/// What the controller is allowed to know: the output of the (noisy) sensors, and nothing else. The
+/// libraries of core/control, core/exploration and core/gait see this type and never core/world.
+
+#include <cstdint>
+
+#include "core/common/fixed_vector.h"
+#include "core/common/frames.h"
+#include "core/common/limits.h"
+
+namespace regrasp {
+
+struct FingertipReading {
+  bool in_contact = false;
+  Vector3d p_WC = Vector3d::Zero();       ///< contact position [m]; meaningless without contact
+  Vector3d normal_W = Vector3d::UnitZ();  ///< outward object normal, unit; meaningless without contact
+  double force = 0;                       ///< normal force, >= 0 [N]
+};
+
+struct SensorReading {
+  std::int64_t tick = 0;
+  FixedVector<FingertipReading, kMaxFingers> fingertips;  ///< one per finger of the hand
+  JointVector q;                                          ///< joint angles [rad]
+  Vector3d p_WO = Vector3d::Zero();                       ///< object position [m]
+  Quaterniond q_WO = Quaterniond::Identity();             ///< object orientation
+};
+
+}  // namespace regrasp

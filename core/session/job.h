@@ -1,0 +1,57 @@
+#pragma once
+
+/// Records of long-running work. Plain data of fixed size, so that they travel in frames.
+
+#include <cstdint>
+#include <string_view>
+
+#include "core/session/command.h"
+
+namespace regrasp {
+
+enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kStep };
+enum class JobState : std::uint8_t { kQueued, kRunning, kDone, kFailed, kCancelled };
+/// Why an exploration ended.
+enum class ExploreReason : std::uint8_t { kNone, kGradient, kMaxCycles, kContactLost, kDropped, kCancelled };
+
+std::string_view Name(JobMethod method);       ///< "grasp", ...
+std::string_view Name(JobState state);         ///< "queued", ...
+std::string_view Name(ExploreReason reason);   ///< "gradient", "max_cycles", ...; "" for kNone
+
+struct ExploreResult {
+  int finger = -1;
+  Criterion criterion = Criterion::kManipulability;
+  Estimator estimator = Estimator::kLeastSquares;
+  bool converged = false;
+  ExploreReason reason = ExploreReason::kNone;
+  int cycles = 0;                  ///< i of Algorithm 1
+  double phi_initial = 0, phi_final = 0;            ///< as the controller saw it (see Objective)
+  double phi_true_initial = 0, phi_true_final = 0;  ///< noise-free, from the simulator, for judging only
+  double path_length_m = 0;        ///< of the true contact point over the object
+  std::uint64_t seed = 0;
+};
+
+struct RotateResult {
+  double angle_rad = 0;            ///< signed, unwrapped, true object rotation about the axis
+  double turns = 0;
+  int gait_cycles = 0;
+  int regrasps = 0;
+  bool dropped = false;
+  double max_position_error_m = 0;
+  double max_tilt_rad = 0;
+  double sim_time_s = 0;
+};
+
+struct JobRecord {
+  std::int64_t id = 0;
+  JobMethod method = JobMethod::kGrasp;
+  JobState state = JobState::kQueued;
+  char error[160] = {};            ///< empty unless failed
+  double progress = 0;             ///< 0 .. 1
+  std::int64_t start_tick = -1;    ///< tick at which the command was applied
+  std::int64_t end_tick = -1;
+  ExploreResult explore;           ///< method explore only
+  RotateResult rotate;             ///< method rotate only
+};
+
+}  // namespace regrasp

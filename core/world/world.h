@@ -1,0 +1,105 @@
+#pragma once
+
+/// The physical truth: hand and object simulated with ODE. Only the session, the sensors and the judges
+/// (job records, pictures, tests) may include this file; the controller's libraries do not link it.
+///
+/// Honest physics: outside the stand-in (SetStandIn, on only before a grasp is complete) and a user's
+/// push (SetPush) nothing but contact friction and gravity acts on the object.
+
+#include <memory>
+
+#include "core/common/fixed_vector.h"
+#include "core/common/frames.h"
+#include "core/common/hash.h"
+#include "core/common/limits.h"
+#include "core/hand/hand_model.h"
+#include "core/hand/object_model.h"
+
+namespace regrasp {
+
+enum class Stepper {
+  kFast,   ///< dWorldQuickStep, seeded
+  kExact,  ///< dWorldStep: the reference
+};
+
+struct WorldConfig {
+  double dt = 1e-3;                   ///< step [s]
+  Stepper stepper = Stepper::kFast;
+  int iterations = 20;                ///< QuickStep iterations
+  double contact_stiffness = 4000;    ///< [N/m]
+  double contact_damping = 8;         ///< [N s/m]
+  bool merge_universal = true;        ///< perpendicular joint pairs sharing an anchor become one universal joint
+};
+
+/// One contact of the object, with whatever it touches.
+struct ObjectContact {
+  int link = -1;                            ///< link of the hand
+  int finger = -1;                          ///< finger whose tip link this is, -1 for any other link
+  Vector3d p_WC = Vector3d::Zero();         ///< [m]
+  Vector3d normal_W = Vector3d::UnitZ();    ///< outward normal of the object
+  Vector3d force_W = Vector3d::Zero();      ///< on the object, of the last step [N]
+  double depth = 0;                         ///< penetration [m]
+};
+
+/// Everything the simulator knows after a step.
+struct WorldState {
+  JointVector q;                                  ///< joint angles [rad]
+  JointVector qdot;                               ///< joint rates [rad/s]
+  JointVector torque;                             ///< torques applied by the drives, after the effort limit [N m]
+  Vector3d p_WO = Vector3d::Zero();               ///< [m]
+  Quaterniond q_WO = Quaterniond::Identity();
+  Vector3d v_WO = Vector3d::Zero();               ///< [m/s]
+  Vector3d w_WO = Vector3d::Zero();               ///< [rad/s]
+  FixedVector<ObjectContact, kMaxObjectContacts> contacts;
+  int link_link_contacts = 0;                     ///< contacts of hand links with each other
+};
+
+enum class StepStatus { kOk, kFault };
+
+class World {
+ public:
+  /// Builds the world at rest: joints at `q0` [rad], the object at `X_WO0`, in the stand-in's hold.
+  /// `seed` seeds QuickStep's row reordering.
+  World(const HandModel& hand, const ObjectModel& object, const WorldConfig& config,
+        const JointVector& q0, const Isometry3d& X_WO0, std::uint64_t seed);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// Drive torques for the coming steps [N m], clamped to each joint's effort. Viscous damping of the
+  /// model and the joint stops act in addition. Non-finite values are a fault at the next step.
+  void SetTorque(const JointVector& torque);
+  /// The stand-in holds the object where it is now (true) or lets go (false).
+  void SetStandIn(bool on);
+  bool stand_in() const;
+  /// Force on the object at its centre, in W [N], until changed.
+  void SetPush(const Vector3d& force_W);
+  void SetGravity(const Vector3d& gravity_W);  ///< [m/s²]
+  void SetFriction(double coefficient);        ///< (0, 1]
+  void SetMass(double mass_kg);                ///< > 0; the inertia scales with it
+
+  /// Advances by dt. Never throws and never ends the process: a fault inside ODE makes this and every
+  /// later call return kFault, and only destroying the world helps. `fault_message()` tells the reason.
+  StepStatus Step();
+  const char* fault_message() const;
+
+  /// The truth after the last step (or the initial state).
+  const WorldState& state() const;
+  double mass_kg() const;
+  double friction() const;
+  const Vector3d& gravity_W() const;
+
+  /// Seconds the last step spent in collision detection and in the ODE stepper; 0 unless `on`.
+  struct StageTimes { double collide_s = 0, step_s = 0; };
+  void MeasureStages(bool on);
+  StageTimes stage_times() const;
+
+  /// Feeds everything that decides the future of this world to the hasher.
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace regrasp
