@@ -1,0 +1,63 @@
+#pragma once
+
+/// The controller's picture of the world: filtered sensor readings and what kinematics makes of them.
+
+#include <array>
+
+#include "core/common/hash.h"
+#include "core/control/control_parameters.h"
+#include "core/hand/kinematics.h"
+#include "core/quality/grasp.h"
+#include "core/sensing/sensor_reading.h"
+
+namespace regrasp {
+
+struct FingerEstimate {
+  bool in_contact = false;                ///< this tick's reading
+  bool ever_in_contact = false;           ///< p_WC and normal_W hold something
+  int ticks_without_contact = 0;
+  int ticks_in_contact = 0;
+  Vector3d p_WC = Vector3d::Zero();       ///< filtered contact point; the last one while out of contact [m]
+  Vector3d normal_W = Vector3d::UnitZ();  ///< filtered outward object normal
+  double force = 0;                       ///< filtered normal force [N]
+  FingerJacobian J;                       ///< at p_WC, or at the fingertip centre if never in contact
+  Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
+  double manipulability = 0;              ///< at p_WC [kManipulabilityUnit]
+};
+
+struct Estimate {
+  JointVector q;                          ///< [rad]
+  KinematicsData kinematics;
+  FixedVector<FingerEstimate, kMaxFingers> fingers;
+  Vector3d p_WO = Vector3d::Zero();       ///< [m]
+  Quaterniond q_WO = Quaterniond::Identity();
+  double object_scale = 0.02;             ///< mean distance of the contacts from p_WO: the torque scale [m]
+};
+
+/// First-order low passes over the sensor readings. Contact points are filtered in the frame of the
+/// fingertip, where they move slowly while the finger moves.
+class Estimator {
+ public:
+  Estimator(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {}
+  /// Forgets everything.
+  void Reset() { *this = Estimator(*hand_, dt_); }
+  const Estimate& Update(const SensorReading& reading, const ControlParameters& parameters);
+  const Estimate& estimate() const { return estimate_; }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  struct ContactFilter {
+    Vector3d p_L = Vector3d::Zero(), n_L = Vector3d::UnitZ();  // in the tip link's frame
+  };
+  const HandModel* hand_;
+  double dt_;
+  bool started_ = false;
+  std::array<ContactFilter, kMaxFingers> contact_{};
+  Estimate estimate_;
+};
+
+/// The contacts of the fingers whose bit is set in `fingers`, positions relative to the estimated object
+/// centre, friction coefficient `mu`. Fingers that never touched are left out.
+Grasp GraspOf(const Estimate& estimate, unsigned fingers, double mu);
+
+}  // namespace regrasp

@@ -1,0 +1,97 @@
+#include "core/control/grasp_sequence.h"
+
+#include <algorithm>
+
+namespace regrasp {
+namespace {
+
+constexpr int kTouchTicks = 5;       // consecutive ticks of contact that count as a touch
+constexpr double kReachSlack_s = 0.5;  // after the closed posture is reached, wait so long for contacts
+
+}  // namespace
+
+void GraspSequence::Start(const Estimate& estimate) {
+  phase_ = Phase::kClose;
+  ticks_ = 0;
+  progress_ = 0;
+  q_start_ = estimate.q;
+  touched_.fill(false);
+}
+
+void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed,
+                           const Vector3d& gravity_W, const ControlParameters& parameters,
+                           HybridController* controller, FingerTasks* tasks) {
+  const int num_fingers = hand_->num_fingers();
+  tasks->resize(num_fingers);
+  ++ticks_;
+  const double time = ticks_ * dt_;
+
+  if (phase_ == Phase::kClose) {
+    const double travel = (q_closed - q_start_).cwiseAbs().maxCoeff();
+    const double duration = travel / parameters.close_speed;
+    const double s = std::min(1.0, time / duration);
+    int touched = 0;
+    for (int i = 0; i < num_fingers; ++i) {
+      const FingerEstimate& f = estimate.fingers[i];
+      FingerTask& task = (*tasks)[i];
+      if (!touched_[i] && f.in_contact && f.ticks_in_contact >= kTouchTicks) touched_[i] = true;
+      touched += touched_[i];
+      if (touched_[i]) {
+        task.mode = FingerMode::kTouch;
+        task.force = parameters.close_force;
+        continue;
+      }
+      task.mode = FingerMode::kPosture;
+      const std::vector<int>& joints = hand_->fingers[i].joints;
+      task.q_target.resize(static_cast<Eigen::Index>(joints.size()));
+      for (std::size_t k = 0; k < joints.size(); ++k)
+        task.q_target[k] = q_start_[joints[k]] + s * (q_closed[joints[k]] - q_start_[joints[k]]);
+    }
+    progress_ = 0.6 * s;
+    const bool all = touched == num_fingers;
+    const bool late = time > duration + kReachSlack_s;
+    if (all || (late && touched >= 3)) {
+      phase_ = Phase::kGrip;
+      ticks_ = 0;
+      controller->StartHolding(estimate, gravity_W, parameters);
+    } else if (late) {
+      phase_ = Phase::kFailed;
+    }
+    return;
+  }
+
+  const bool gripping = phase_ == Phase::kGrip;
+  const double ramp =
+      gripping ? std::min(1.0, time / parameters.grip_ramp_s) : 1.0;
+  for (int i = 0; i < num_fingers; ++i) {
+    FingerTask& task = (*tasks)[i];
+    if (!touched_[i]) continue;  // stays in its closed posture
+    task.mode = FingerMode::kHold;
+    task.grip = parameters.close_force + ramp * (parameters.grip_force - parameters.close_force);
+    task.cap = parameters.close_force + ramp * (parameters.max_normal_force - parameters.close_force);
+  }
+  if (gripping) {
+    progress_ = 0.6 + 0.2 * ramp;
+    // The stand-in holds the object: restarting keeps the integrals and the reference from winding up.
+    controller->wrench().Start(estimate, gravity_W, parameters);
+    if (time > parameters.grip_ramp_s + parameters.stand_in_release_s) {
+      phase_ = Phase::kAlone;
+      ticks_ = 0;
+      for (int i = 0; i < num_fingers; ++i) controller->RestHere(estimate, i);
+    }
+  } else if (phase_ == Phase::kAlone) {
+    progress_ = 0.8 + 0.2 * std::min(1.0, time / parameters.settle_s);
+    if (time > parameters.settle_s) phase_ = Phase::kDone;
+  }
+}
+
+void GraspSequence::AddTo(StateHasher* hasher) const {
+  hasher->Add(phase_);
+  hasher->Add(ticks_);
+  hasher->Add(progress_);
+  if (phase_ == Phase::kIdle) return;
+  hasher->Add(q_start_);
+  for (bool touched : touched_) hasher->Add(touched);
+}
+
+}  // namespace regrasp

@@ -1,0 +1,181 @@
+#include "core/control/hybrid_controller.h"
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+
+namespace regrasp {
+namespace {
+
+/// Damped pseudo-inverse J⁺ = Jᵀ (J Jᵀ + lambda² I)⁻¹, n x 3.
+using FingerPinv = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxFingerJoints, 3>;
+FingerPinv DampedPinv(const FingerJacobian& J, double lambda) {
+  const Matrix3d JJt = J * J.transpose() + lambda * lambda * Matrix3d::Identity();
+  const Matrix3d inverse = JJt.inverse();
+  return J.transpose() * inverse;
+}
+
+}  // namespace
+
+HybridController::HybridController(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {
+  torque_ = JointVector::Zero(hand.num_joints());
+  q_rest_ = JointVector::Zero(hand.num_joints());
+  commanded_.resize(hand.fingers.size());
+  for (Vector3d& f : commanded_) f.setZero();
+}
+
+void HybridController::StartHolding(const Estimate& estimate, const Vector3d& gravity_W,
+                                    const ControlParameters& parameters) {
+  wrench_.Start(estimate, gravity_W, parameters);
+  qp_.Reset();
+  q_rest_ = estimate.q;
+}
+
+void HybridController::RestHere(const Estimate& estimate, int finger) {
+  for (int j : hand_->fingers[finger].joints) q_rest_[j] = estimate.q[j];
+}
+
+Vector3d HybridController::SlideForce(const FingerEstimate& finger, const FingerTask& task,
+                                      const Vector3d& v_surface,
+                                      const ControlParameters& parameters, FingerState* state) {
+  state->p_ref_W += (task.v_W + v_surface) * dt_;
+  const double reach = parameters.slide_force_limit / parameters.slide_stiffness;
+  Vector3d error = TangentPart(state->p_ref_W - finger.p_WF, finger.normal_W);
+  const double norm = error.norm();
+  if (norm > reach) error *= reach / norm;
+  state->p_ref_W = finger.p_WF + error;  // forgets the normal part, and what is out of reach
+  if (finger.in_contact) {
+    state->normal_integral += parameters.normal_force_integral * dt_ * (task.force - finger.force);
+    state->normal_integral = std::clamp(state->normal_integral, -0.5 * task.force, 0.5 * task.force);
+  }
+  const double normal_force = task.force + state->normal_integral;
+  return parameters.slide_stiffness * error - normal_force * finger.normal_W;
+}
+
+const JointVector& HybridController::Update(const Estimate& estimate, const FingerTasks& tasks,
+                                            const ObjectMotion& motion, const Vector3d& gravity_W,
+                                            const ControlParameters& parameters) {
+  const int num_fingers = hand_->num_fingers();
+  const double reapproach_ticks = parameters.reapproach_delay_s / dt_;
+  torque_ = GravityTorque(*hand_, estimate.kinematics, gravity_W);
+  problem_.contacts.clear();
+  Vector3d carried_force = Vector3d::Zero(), carried_torque = Vector3d::Zero();
+  std::array<Vector3d, kMaxFingers> v_ref;  // wanted velocity of the contact point
+  bool holding = false;
+
+  for (int i = 0; i < num_fingers; ++i) {
+    const FingerEstimate& f = estimate.fingers[i];
+    const FingerTask& task = tasks[i];
+    FingerState& state = states_[i];
+    if (state.mode != task.mode) {
+      state.mode = task.mode;
+      state.p_ref_W = f.p_WF;
+      state.normal_integral = 0;
+    }
+    commanded_[i].setZero();
+    const Vector3d r = f.p_WC - estimate.p_WO;
+    const Vector3d v_surface = motion.v_W + motion.w_W.cross(r);
+    v_ref[i] = v_surface;
+    const bool lost = f.ticks_without_contact > reapproach_ticks;
+    switch (task.mode) {
+      case FingerMode::kPosture:
+        break;
+      case FingerMode::kTouch:
+        commanded_[i] = -task.force * f.normal_W;
+        if (lost) v_ref[i] -= parameters.reapproach_speed * f.normal_W;
+        break;
+      case FingerMode::kHold:
+        holding = true;
+        if (lost) {
+          commanded_[i] = -parameters.reapproach_force * f.normal_W;
+          v_ref[i] -= parameters.reapproach_speed * f.normal_W;
+        } else {
+          problem_.contacts.push_back({i, r, -f.normal_W, task.cap, std::min(task.grip, task.cap)});
+        }
+        break;
+      case FingerMode::kSlide: {
+        commanded_[i] = SlideForce(f, task, v_surface, parameters, &state);
+        v_ref[i] += task.v_W;
+        if (lost) {
+          v_ref[i] -= parameters.reapproach_speed * f.normal_W;
+        } else {
+          const Vector3d tangential = TangentPart(commanded_[i], f.normal_W);
+          const double drag = parameters.slide_friction_share * task.force;
+          const double t = tangential.norm();
+          const Vector3d on_object =
+              -task.force * f.normal_W + (t > drag ? Vector3d(tangential * (drag / t)) : tangential);
+          carried_force += on_object;
+          carried_torque += r.cross(on_object);
+        }
+        break;
+      }
+      case FingerMode::kReach: {
+        Vector3d error = task.p_target_W - f.p_WF;
+        const double reach = parameters.slide_force_limit / parameters.slide_stiffness;
+        if (error.norm() > reach) error *= reach / error.norm();
+        commanded_[i] = parameters.slide_stiffness * error;
+        v_ref[i] = task.v_target_W;
+        break;
+      }
+    }
+  }
+
+  if (holding) {
+    wrench_.Move(motion.v_W, motion.w_W, dt_);
+    wrench_.Update(estimate, parameters, dt_, qp_.residual() > parameters.residual_limit);
+    problem_.force = wrench_.force() - carried_force;
+    problem_.torque = wrench_.torque() - carried_torque;
+    problem_.torque_scale = estimate.object_scale;
+    problem_.grip_weight = parameters.grip_weight;
+    problem_.mu = parameters.friction_estimate;
+    problem_.lower = parameters.min_normal_force;
+    const auto& forces = qp_.Solve(problem_);
+    for (std::size_t k = 0; k < forces.size(); ++k) commanded_[problem_.contacts[k].finger] = forces[k];
+  }
+
+  for (int i = 0; i < num_fingers; ++i) {
+    const FingerEstimate& f = estimate.fingers[i];
+    const FingerTask& task = tasks[i];
+    const std::vector<int>& joints = hand_->fingers[i].joints;
+    const int n = static_cast<int>(joints.size());
+    FingerVector tau = FingerVector::Zero(n);
+    if (task.mode == FingerMode::kPosture) {
+      for (int k = 0; k < n; ++k)
+        tau[k] = parameters.free_stiffness * (task.q_target[k] - estimate.q[joints[k]]);
+    } else {
+      const FingerPinv pinv = DampedPinv(f.J, parameters.pinv_damping);
+      FingerVector posture(n);
+      for (int k = 0; k < n; ++k)
+        posture[k] = parameters.posture_stiffness * (q_rest_[joints[k]] - estimate.q[joints[k]]);
+      const FingerVector qdot_ref = pinv * v_ref[i];
+      const Vector3d along = f.J * posture;
+      tau = f.J.transpose() * commanded_[i] + posture - pinv * along;
+      for (int k = 0; k < n; ++k) tau[k] += hand_->joints[joints[k]].damping * qdot_ref[k];
+    }
+    for (int k = 0; k < n; ++k) {
+      const Joint& joint = hand_->joints[joints[k]];
+      const double q = estimate.q[joints[k]];
+      const double below = joint.lower + parameters.limit_margin - q;
+      const double above = q - (joint.upper - parameters.limit_margin);
+      if (task.mode != FingerMode::kPosture) {
+        if (below > 0) tau[k] += parameters.limit_stiffness * below;
+        if (above > 0) tau[k] -= parameters.limit_stiffness * above;
+      }
+      torque_[joints[k]] += tau[k];
+    }
+  }
+  return torque_;
+}
+
+void HybridController::AddTo(StateHasher* hasher) const {
+  wrench_.AddTo(hasher);
+  qp_.AddTo(hasher);
+  hasher->Add(q_rest_);
+  for (int i = 0; i < hand_->num_fingers(); ++i) {
+    hasher->Add(states_[i].mode);
+    hasher->Add(states_[i].p_ref_W);
+    hasher->Add(states_[i].normal_integral);
+  }
+}
+
+}  // namespace regrasp

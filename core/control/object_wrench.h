@@ -1,0 +1,43 @@
+#pragma once
+
+#include "core/common/hash.h"
+#include "core/control/control_parameters.h"
+#include "core/control/estimate.h"
+
+namespace regrasp {
+
+/// The wrench the fingers shall exert on the object, about its centre: a PI law on its sensed pose.
+///
+///   F = F_i + k_p e_p,  dF_i/dt = k_i e_p,  F_i starts at -m g and stays within a box about it
+///   T = T_i + k_r e_r,  dT_i/dt = k_j e_r
+///
+/// e_p, e_r: position error and rotation vector from sensed to reference pose, limited in norm.
+class ObjectWrench {
+ public:
+  /// Holds the object where it is estimated to be, from a fresh integral.
+  void Start(const Estimate& estimate, const Vector3d& gravity_W, const ControlParameters& parameters);
+  /// New reference, integrals kept.
+  void SetReference(const Vector3d& p_WO, const Quaterniond& q_WO) {
+    p_ref_ = p_WO;
+    q_ref_ = q_WO;
+  }
+  /// Moves the reference with a velocity [m/s] and angular velocity [rad/s] in W for dt [s].
+  void Move(const Vector3d& v_W, const Vector3d& w_W, double dt);
+  /// One tick. `freeze` stops the integrals (the QP cannot deliver the wrench).
+  void Update(const Estimate& estimate, const ControlParameters& parameters, double dt, bool freeze);
+
+  const Vector3d& force() const { return force_; }    ///< [N]
+  const Vector3d& torque() const { return torque_; }  ///< [N m]
+  const Vector3d& p_ref() const { return p_ref_; }
+  const Quaterniond& q_ref() const { return q_ref_; }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  Vector3d p_ref_ = Vector3d::Zero();
+  Quaterniond q_ref_ = Quaterniond::Identity();
+  Vector3d force_start_ = Vector3d::Zero(), force_integral_ = Vector3d::Zero();
+  Vector3d torque_integral_ = Vector3d::Zero();
+  Vector3d force_ = Vector3d::Zero(), torque_ = Vector3d::Zero();
+};
+
+}  // namespace regrasp

@@ -1,0 +1,98 @@
+#include "core/exploration/surface_exploration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace regrasp {
+namespace {
+
+Vector3d LimitNorm(const Vector3d& v, double limit) {
+  const double norm = v.norm();
+  return norm > limit ? Vector3d(v * (limit / norm)) : v;
+}
+
+// Position variance below which the least-squares rule distrusts a direction: contact noise that is
+// left after filtering is about 0.13 mm.
+constexpr double kRidge = 2e-8;  // m²
+
+}  // namespace
+
+void SurfaceExploration::Start(const Input& input, GradientRule rule, std::uint64_t seed,
+                               int max_cycles, const ExplorationParameters& parameters) {
+  *this = SurfaceExploration();
+  rule_ = rule;
+  random_ = RandomStream(seed, 0);
+  max_cycles_ = max_cycles > 0 ? max_cycles : static_cast<int>(parameters.max_cycles);
+  p_WC_start_ = p_WC_prev_ = input.p_WC;
+  phi_prev_ = input.phi;
+  const Matrix3d R_WC = RotationFromZ(input.normal_W);
+  const double sigma = parameters.sigma * parameters.gradient_max;
+  const double gx = sigma * random_.Normal(), gy = sigma * random_.Normal();
+  gradient_W_ = R_WC * Vector3d(gx, gy, 0);  // line 2
+  gradient_norm_ = std::hypot(gx, gy);
+}
+
+SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
+                                                      const ExplorationParameters& parameters,
+                                                      double dt) {
+  if (++cycle_ > max_cycles_) return Status::kMaxCycles;  // line 3
+  const Matrix3d R_WC = RotationFromZ(input.normal_W);
+  const int n = std::max(1, static_cast<int>(parameters.update_cycles));
+  const bool least_squares = rule_ == GradientRule::kLeastSquares;
+  if (least_squares)
+    least_squares_.Add(input.p_WC, input.phi, std::pow(parameters.forgetting, 1.0 / n));
+
+  const double moved = TangentPart(input.p_WC - p_WC_prev_, input.normal_W).norm();
+  if (cycle_ % n == 0 && moved >= parameters.min_displacement) {  // line 4
+    Vector3d gradient_C =
+        least_squares ? least_squares_.Gradient(R_WC, kRidge)
+                      : SecantEstimator::Gradient(p_WC_prev_, phi_prev_, input.p_WC, input.phi, R_WC,
+                                                  parameters.min_displacement);
+    gradient_C = LimitNorm(gradient_C, parameters.gradient_max);                      // line 7
+    gradient_W_ = parameters.lambda * gradient_W_ +
+                  (1.0 - parameters.lambda) * (R_WC * gradient_C);                    // line 8
+    p_WC_prev_ = input.p_WC;                                                          // line 9
+    phi_prev_ = input.phi;
+    ++updates_;
+    gradient_norm_ = TangentPart(gradient_W_, input.normal_W).norm();
+    small_updates_ = gradient_norm_ <= parameters.epsilon ? small_updates_ + 1 : 0;
+    if (small_updates_ >= static_cast<int>(parameters.converged_updates)) return Status::kConverged;
+  }
+
+  const Vector3d tangent = TangentPart(gradient_W_, input.normal_W);
+  const double norm = tangent.norm();
+  velocity_W_.setZero();
+  if (norm > 1e-9) {  // line 11
+    const double speed = std::clamp(parameters.eta * norm, parameters.speed_min, parameters.speed_max);
+    velocity_W_ = tangent * (speed / norm);
+  }
+  const Vector3d excursion = TangentPart(input.p_WC - p_WC_start_, input.normal_W);
+  const double distance = excursion.norm();
+  if (distance > parameters.max_excursion) {
+    const Vector3d outward = excursion / distance;
+    velocity_W_ -= std::max(0.0, velocity_W_.dot(outward)) * outward;
+  }
+  if (least_squares) {
+    const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;
+    velocity_W_ += parameters.dither_speed *
+                   (std::cos(phase) * R_WC.col(0) + std::sin(phase) * R_WC.col(1));
+  }
+  return Status::kRunning;
+}
+
+void SurfaceExploration::AddTo(StateHasher* hasher) const {
+  hasher->Add(rule_);
+  random_.AddTo(*hasher);
+  least_squares_.AddTo(hasher);
+  hasher->Add(cycle_);
+  hasher->Add(max_cycles_);
+  hasher->Add(small_updates_);
+  hasher->Add(p_WC_start_);
+  hasher->Add(p_WC_prev_);
+  hasher->Add(phi_prev_);
+  hasher->Add(gradient_W_);
+  hasher->Add(velocity_W_);
+}
+
+}  // namespace regrasp

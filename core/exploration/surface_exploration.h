@@ -1,0 +1,76 @@
+#pragma once
+
+/// Algorithm 1 of the paper: "Object surface exploration, maximizing phi".
+///
+///    1  i = 0
+///    2  gradient in W <- random, N(0, sigma)
+///    3  while ++i <= N_max and |P R_WCᵀ gradient| > epsilon
+///    4    every n cycles:
+///    5      dc_C = P R_WCᵀ (p_WC_prev - p_WC)
+///    6      gradient_C = component-wise secant, or least squares   (gradient_estimator.h)
+///    7      limit its norm to gradient_max
+///    8      gradient <- lambda gradient + (1 - lambda) R_WC gradient_C
+///    9      phi_prev <- phi, p_WC_prev <- p_WC
+///   11    commanded contact displacement = eta R_WC P R_WCᵀ gradient, to the hybrid controller
+///
+/// Departures from the print, each with its reason:
+///  - line 2: the start is tangential, sigma scaled by gradient_max so that it is of phi's own magnitude.
+///  - line 3: the test must hold for `converged_updates` consecutive updates; an instantaneous one ends
+///    runs whose estimate merely crosses zero.
+///  - line 4: an update also waits until the contact has moved by `min_displacement`.
+///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
+///  - line 11: the displacement is per second, limited to [speed_min, speed_max]; beyond `max_excursion`
+///    from the start its outward part is removed.
+/// The class knows nothing of the hand: it turns contact points and values of phi into velocities.
+
+#include <cstdint>
+
+#include "core/common/random.h"
+#include "core/exploration/gradient_estimator.h"
+
+namespace regrasp {
+
+enum class GradientRule : std::uint8_t { kSecant, kLeastSquares };
+
+class SurfaceExploration {
+ public:
+  enum class Status : std::uint8_t { kRunning, kConverged, kMaxCycles };
+
+  /// What line 5 to 11 need, every tick.
+  struct Input {
+    Vector3d p_WC = Vector3d::Zero();        ///< sensed contact point [m]
+    Vector3d normal_W = Vector3d::UnitZ();   ///< sensed outward object normal
+    double phi = 0;                          ///< objective, of order 1
+  };
+
+  /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.
+  void Start(const Input& input, GradientRule rule, std::uint64_t seed, int max_cycles,
+             const ExplorationParameters& parameters);
+  /// One pass of the loop. dt: [s] per cycle.
+  Status Update(const Input& input, const ExplorationParameters& parameters, double dt);
+
+  /// Line 11: wanted velocity of the contact over the surface, in W, tangential [m/s].
+  const Vector3d& velocity_W() const { return velocity_W_; }
+  /// The smoothed gradient, in W [1/m].
+  const Vector3d& gradient_W() const { return gradient_W_; }
+  /// |P R_WCᵀ gradient| at the last update [1/m].
+  double gradient_norm() const { return gradient_norm_; }
+  int cycle() const { return cycle_; }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  GradientRule rule_ = GradientRule::kLeastSquares;
+  RandomStream random_;
+  LeastSquaresEstimator least_squares_;
+  int cycle_ = 0;
+  int max_cycles_ = 0;
+  int updates_ = 0;
+  int small_updates_ = 0;   // consecutive, with the gradient below epsilon
+  Vector3d p_WC_start_ = Vector3d::Zero(), p_WC_prev_ = Vector3d::Zero();
+  double phi_prev_ = 0;
+  Vector3d gradient_W_ = Vector3d::Zero();
+  double gradient_norm_ = 0;
+  Vector3d velocity_W_ = Vector3d::Zero();
+};
+
+}  // namespace regrasp
