@@ -10,7 +10,7 @@ double Gain(double dt, double time_constant) { return dt / (time_constant + dt);
 
 }  // namespace
 
-const Estimate& Estimator::Update(const SensorReading& reading,
+const Estimate& StateEstimator::Update(const SensorReading& reading,
                                   const ControlParameters& parameters) {
   Estimate& e = estimate_;
   if (!started_) {
@@ -77,7 +77,7 @@ const Estimate& Estimator::Update(const SensorReading& reading,
   return e;
 }
 
-void Estimator::AddTo(StateHasher* hasher) const {
+void StateEstimator::AddTo(StateHasher* hasher) const {
   const Estimate& e = estimate_;
   hasher->Add(started_);
   hasher->Add(e.q);

@@ -36,11 +36,11 @@ struct Estimate {
 
 /// First-order low passes over the sensor readings. Contact points are filtered in the frame of the
 /// fingertip, where they move slowly while the finger moves.
-class Estimator {
+class StateEstimator {
  public:
-  Estimator(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {}
+  StateEstimator(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {}
   /// Forgets everything.
-  void Reset() { *this = Estimator(*hand_, dt_); }
+  void Reset() { *this = StateEstimator(*hand_, dt_); }
   const Estimate& Update(const SensorReading& reading, const ControlParameters& parameters);
   const Estimate& estimate() const { return estimate_; }
   void AddTo(StateHasher* hasher) const;

@@ -2,11 +2,18 @@
 
 /// Two estimates of the gradient of phi on the surface from the finger's own motion.
 
+#include <cstdint>
+#include <string_view>
+
 #include "core/common/frames.h"
 #include "core/common/hash.h"
 #include "core/exploration/exploration_parameters.h"
 
 namespace regrasp {
+
+/// How the gradient is estimated. kSecant is the paper's printed line 6; kLeastSquares is the default.
+enum class Estimator : std::uint8_t { kSecant, kLeastSquares };
+std::string_view Name(Estimator estimator);  ///< "secant", "least_squares"
 
 /// The paper's printed rule (lines 5 and 6): component-wise secants between two updates.
 ///

@@ -18,10 +18,10 @@ constexpr double kRidge = 2e-8;  // m²
 
 }  // namespace
 
-void SurfaceExploration::Start(const Input& input, GradientRule rule, std::uint64_t seed,
+void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uint64_t seed,
                                int max_cycles, const ExplorationParameters& parameters) {
   *this = SurfaceExploration();
-  rule_ = rule;
+  estimator_ = estimator;
   random_ = RandomStream(seed, 0);
   max_cycles_ = max_cycles > 0 ? max_cycles : static_cast<int>(parameters.max_cycles);
   p_WC_start_ = p_WC_prev_ = input.p_WC;
@@ -39,7 +39,7 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   if (++cycle_ > max_cycles_) return Status::kMaxCycles;  // line 3
   const Matrix3d R_WC = RotationFromZ(input.normal_W);
   const int n = std::max(1, static_cast<int>(parameters.update_cycles));
-  const bool least_squares = rule_ == GradientRule::kLeastSquares;
+  const bool least_squares = estimator_ == Estimator::kLeastSquares;
   if (least_squares)
     least_squares_.Add(input.p_WC, input.phi, std::pow(parameters.forgetting, 1.0 / n));
 
@@ -82,7 +82,7 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
 }
 
 void SurfaceExploration::AddTo(StateHasher* hasher) const {
-  hasher->Add(rule_);
+  hasher->Add(estimator_);
   random_.AddTo(*hasher);
   least_squares_.AddTo(hasher);
   hasher->Add(cycle_);

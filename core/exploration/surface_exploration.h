@@ -30,8 +30,6 @@
 
 namespace regrasp {
 
-enum class GradientRule : std::uint8_t { kSecant, kLeastSquares };
-
 class SurfaceExploration {
  public:
   enum class Status : std::uint8_t { kRunning, kConverged, kMaxCycles };
@@ -44,7 +42,7 @@ class SurfaceExploration {
   };
 
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.
-  void Start(const Input& input, GradientRule rule, std::uint64_t seed, int max_cycles,
+  void Start(const Input& input, Estimator estimator, std::uint64_t seed, int max_cycles,
              const ExplorationParameters& parameters);
   /// One pass of the loop. dt: [s] per cycle.
   Status Update(const Input& input, const ExplorationParameters& parameters, double dt);
@@ -59,7 +57,7 @@ class SurfaceExploration {
   void AddTo(StateHasher* hasher) const;
 
  private:
-  GradientRule rule_ = GradientRule::kLeastSquares;
+  Estimator estimator_ = Estimator::kLeastSquares;
   RandomStream random_;
   LeastSquaresEstimator least_squares_;
   int cycle_ = 0;

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "core/common/frames.h"
+#include "core/exploration/gradient_estimator.h"
+#include "core/exploration/objective.h"
 #include "core/hand/object_model.h"
 #include "core/sensing/noise.h"
 
@@ -16,14 +18,6 @@ namespace regrasp {
 enum class CommandType : std::uint8_t {
   kGrasp, kRelease, kExplore, kRotate, kStop, kNoise, kPush, kParameter, kCancelJob, kReset,
 };
-
-/// What exploration maximises.
-enum class Criterion : std::uint8_t { kManipulability, kStability, kSwitched, kCombined };
-/// How it estimates the gradient. kSecant is the paper's printed line 6; kLeastSquares is the default.
-enum class Estimator : std::uint8_t { kSecant, kLeastSquares };
-
-std::string_view Name(Criterion criterion);   ///< "manipulability", ...
-std::string_view Name(Estimator estimator);   ///< "secant", "least_squares"
 
 struct Command {
   CommandType type = CommandType::kStop;

@@ -1,0 +1,66 @@
+#pragma once
+
+/// One finger explores while the others hold: load transfer, Algorithm 1, and back into the grasp.
+
+#include "core/control/hybrid_controller.h"
+#include "core/exploration/objective.h"
+#include "core/exploration/surface_exploration.h"
+
+namespace regrasp {
+
+class FingerExploration {
+ public:
+  enum class Phase : std::uint8_t {
+    kIdle,
+    kUnload,  ///< its force ramps down to the exploring force, the others take over
+    kSettle,  ///< the finger presses with the exploring force and waits for the filters
+    kSlide,   ///< Algorithm 1
+    kReload,  ///< its force ramps up again
+    kDone,
+  };
+  enum class End : std::uint8_t { kNone, kGradient, kMaxCycles, kContactLost };
+
+  struct Request {
+    int finger = -1;
+    Criterion criterion = Criterion::kManipulability;
+    Estimator estimator = Estimator::kLeastSquares;
+    std::uint64_t seed = 0;
+    int max_cycles = 0;  ///< 0 takes the parameter's
+  };
+
+  void Start(const Request& request);
+  /// Ends sliding at the next tick and goes on to kReload.
+  void Stop();
+  /// One tick; changes the tasks of `request.finger` only. `grasp`: bits of the fingers that form the
+  /// grasp, this one included. dt [s].
+  void Update(const Estimate& estimate, unsigned grasp, const ControlParameters& control,
+              const ExplorationParameters& parameters, double dt, HybridController* controller,
+              FingerTasks* tasks);
+
+  const Request& request() const { return request_; }
+  Phase phase() const { return phase_; }
+  /// True in the tick in which sliding begins / ends: the moments at which phi is judged.
+  bool slide_began() const { return slide_began_; }
+  bool slide_ended() const { return slide_ended_; }
+  End end() const { return end_; }
+  double phi() const { return phi_; }
+  double phi_initial() const { return phi_initial_; }
+  double phi_final() const { return phi_final_; }
+  bool on_stability() const { return on_stability_; }
+  const SurfaceExploration& algorithm() const { return algorithm_; }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  void EnterPhase(Phase phase);
+
+  Request request_;
+  Phase phase_ = Phase::kIdle;
+  int ticks_ = 0;  // in this phase
+  bool stop_ = false, slide_began_ = false, slide_ended_ = false;
+  bool on_stability_ = false;
+  End end_ = End::kNone;
+  double phi_ = 0, phi_initial_ = 0, phi_final_ = 0;
+  SurfaceExploration algorithm_;
+};
+
+}  // namespace regrasp
