@@ -1,0 +1,202 @@
+#include "core/quality/load_margin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace regrasp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUncapped = 1e29;         // a larger cap is none
+constexpr double kDegeneracyShift = 1e-6;  // of the weight: makes the linear programme non-degenerate
+constexpr double kGap = 1e-6;              // of the weight: where a maximisation stops
+constexpr double kMaxSqueeze = 1e5;        // weights: a grasp that needs more does not hold
+constexpr double kPivot = 1e-10;
+constexpr int kMaxPivots = 400;  // per maximisation; typical 5 to 20
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// Revised simplex over the convex cone of contact wrenches. The columns are all the wrenches
+/// a(u) = G (n + mu u), |u| = 1, of all contacts: infinitely many, but the best one for given prices y has a
+/// closed form, u along the tangential part of y. Every basis is feasible, hence a lower bound.
+/// Rows: 6 of wrench balance, then, with capped normal forces, one per contact. Units: weight, torque_scale.
+template <int kMaxRows>
+class ConeSimplex {
+ public:
+  ConeSimplex(std::span<const GraspContact> contacts, double torque_scale, double cap)
+      : contacts_(contacts),
+        inverse_scale_(1.0 / torque_scale),
+        capped_(cap < kUncapped),
+        rows_(6 + (capped_ ? static_cast<int>(contacts.size()) : 0)),
+        cap_(cap) {}
+
+  /// Phase 1: a basis of real columns with sum of wrenches = target. False where there is none.
+  bool Reach(const Vector6d& target) {
+    inverse_.setIdentity(rows_, rows_);
+    x_.setConstant(rows_, cap_);
+    for (int k = 0; k < 6; ++k) {
+      if (target(k) < 0) inverse_(k, k) = -1.0;
+      x_(k) = std::abs(target(k));
+      artificial_[k] = true;
+    }
+    const double squeeze = capped_ ? cap_ * static_cast<double>(contacts_.size()) : kMaxSqueeze;
+    for (int pivots = 0; pivots < kMaxPivots; ++pivots) {
+      double rest = 0.0;
+      bool any = false;
+      prices_.setZero(rows_);
+      for (int k = 0; k < 6; ++k) {
+        if (!artificial_[k]) continue;
+        any = true;
+        rest += x_(k);
+        prices_ -= inverse_.row(k).transpose();
+      }
+      if (!any) return true;
+      const double gain = -Price();
+      if (gain * squeeze < rest || gain < kPivot) return false;
+      const int leaving = RatioTest();
+      if (leaving < 0) return false;
+      Pivot(leaving);
+      if (leaving < 6) artificial_[leaving] = false;
+    }
+    return false;
+  }
+
+  /// Phase 2, from the basis of Reach(): the largest delta with target + delta * direction reachable;
+  /// stops as soon as delta exceeds `enough`. Destroys the basis.
+  double Maximise(const Vector6d& direction, double enough) {
+    column_ = -(inverse_.template leftCols<6>() * direction);
+    const int row = RatioTest();
+    if (row < 0) return kInfinity;
+    Pivot(row);
+    for (int pivots = 0; pivots < kMaxPivots && x_(row) < enough; ++pivots) {
+      prices_ = inverse_.row(row).transpose();
+      const double gain = -Price();
+      if (gain * (x_.sum() + 1.0) < kGap) break;
+      const int leaving = RatioTest();
+      if (leaving < 0) return kInfinity;
+      Pivot(leaving);
+    }
+    return x_(row);
+  }
+
+ private:
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
+
+  /// The column with the least prices_ᵀ a; leaves inverse_ * a in column_.
+  double Price() {
+    const Vector3d y_f = prices_.template head<3>();
+    const Vector3d y_t = prices_.template segment<3>(3) * inverse_scale_;
+    double best = kInfinity;
+    int best_contact = -1;
+    bool best_is_slack = false;
+    Vector3d best_v = Vector3d::Zero();
+    for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+      const GraspContact& contact = contacts_[i];
+      const Vector3d v = y_f + y_t.cross(contact.position);
+      const double v_n = v.dot(contact.inward_normal);
+      const double v_t = std::sqrt(std::max(0.0, v.squaredNorm() - v_n * v_n));
+      const double slack = capped_ ? prices_(6 + i) : 0.0;
+      const double value = v_n - contact.mu * v_t + slack;
+      if (value < best) {
+        best = value;
+        best_contact = i;
+        best_is_slack = false;
+        best_v = v;
+      }
+      if (capped_ && slack < best) {
+        best = slack;
+        best_contact = i;
+        best_is_slack = true;
+      }
+    }
+    if (best_contact < 0) return 0.0;
+    if (best_is_slack) {
+      column_ = inverse_.col(6 + best_contact);
+      return best;
+    }
+    const GraspContact& contact = contacts_[best_contact];
+    Vector3d u = TangentPart(best_v, contact.inward_normal);
+    const double length = u.norm();
+    if (length > 0) u /= length;
+    const Vector3d f = contact.inward_normal - contact.mu * u;
+    Vector6d wrench;
+    wrench << f, contact.position.cross(f) * inverse_scale_;
+    column_ = inverse_.template leftCols<6>() * wrench;
+    if (capped_) column_ += inverse_.col(6 + best_contact);
+    return best;
+  }
+
+  /// The basic variable that reaches zero first as column_ enters; -1 where none does.
+  int RatioTest() const {
+    int leaving = -1;
+    double step = kInfinity;
+    for (int k = 0; k < rows_; ++k) {
+      if (column_(k) <= kPivot) continue;
+      const double ratio = x_(k) / column_(k);
+      if (ratio < step) {
+        step = ratio;
+        leaving = k;
+      }
+    }
+    return leaving;
+  }
+
+  void Pivot(int row) {
+    const double scale = 1.0 / column_(row);
+    const double step = x_(row) * scale;
+    x_ -= step * column_;
+    x_(row) = step;
+    x_ = x_.cwiseMax(0.0);
+    column_(row) -= 1.0;
+    pivot_row_ = inverse_.row(row).transpose() * scale;
+    inverse_.noalias() -= column_ * pivot_row_.transpose();
+  }
+
+  std::span<const GraspContact> contacts_;
+  double inverse_scale_;
+  bool capped_;
+  int rows_;
+  double cap_;
+  bool artificial_[6] = {};
+  Square inverse_;
+  Column x_, prices_, column_, pivot_row_;
+};
+
+template <int kMaxRows>
+double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, double torque_scale,
+             double max_force) {
+  const double norm = weight.norm();
+  const double unit = norm > 0 ? norm : 1.0;
+  Vector6d target;
+  target << -weight / unit, Vector3d::Zero();
+  // Any generic direction will do.
+  Vector6d shift;
+  shift << 0.31, -0.47, 0.73, 0.59, -0.23, 0.89;
+  target += kDegeneracyShift * shift;
+
+  ConeSimplex<kMaxRows> start(contacts, torque_scale,
+                              max_force < kUncapped ? max_force / unit : max_force);
+  if (!start.Reach(target)) return 0.0;
+  double margin = kInfinity;
+  for (int k = 0; k < 6; ++k) {
+    for (const double sign : {1.0, -1.0}) {
+      ConeSimplex<kMaxRows> simplex = start;
+      margin = std::min(margin, simplex.Maximise(sign * Vector6d::Unit(k), margin));
+    }
+  }
+  return margin * unit;
+}
+
+}  // namespace
+
+double LoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
+                  double torque_scale, double max_force) {
+  if (!(max_force < kUncapped)) return Solve<6>(contacts, weight, torque_scale, max_force);
+  if (contacts.size() <= kMaxFingers)
+    return Solve<6 + kMaxFingers>(contacts, weight, torque_scale, max_force);
+  return Solve<Eigen::Dynamic>(contacts, weight, torque_scale, max_force);
+}
+
+}  // namespace regrasp
