@@ -1,0 +1,50 @@
+#pragma once
+
+/// "Did you mean ...?": the known name that is nearest to a mistyped one.
+
+#include <algorithm>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace regrasp {
+
+/// Optimal string alignment distance: insertions, deletions, replacements and swaps of neighbours
+/// that turn `a` into `b`; bytes, case-sensitive.
+inline std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+    before.swap(last);
+    last.swap(row);
+  }
+  return last[b.size()];
+}
+
+/// The name of `names` (any range of things convertible to std::string_view) nearest to `wanted`;
+/// the first of equals. Empty when `names` is empty, or when nothing is near: more than half of the
+/// longer word differs. `wanted` over 256 bytes is near to nothing.
+template <typename Names>
+std::string_view NearestName(std::string_view wanted, const Names& names) {
+  if (wanted.size() > 256) return {};
+  std::string_view best;
+  std::size_t best_distance = 0;
+  for (const auto& candidate : names) {
+    const std::string_view name = candidate;
+    const std::size_t distance = EditDistance(wanted, name);
+    if (2 * distance > std::max(wanted.size(), name.size())) continue;
+    if (best.empty() || distance < best_distance) {
+      best = name;
+      best_distance = distance;
+    }
+  }
+  return best;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,381 @@
+#include "core/protocol/methods.h"
+
+#include <algorithm>
+#include <array>
+
+namespace regrasp {
+namespace {
+
+using enum ParamType;
+
+constexpr std::array<std::string_view, 4> kCriteria = {"manipulability", "stability", "switched",
+                                                       "combined"};
+constexpr std::array<std::string_view, 2> kEstimators = {"least_squares", "secant"};
+constexpr std::array<std::string_view, 5> kPresets = {"off", "fine", "paper", "coarse", "taxel"};
+constexpr std::array<std::string_view, 3> kPlots = {"contacts", "quality", "scene"};
+constexpr std::array<std::string_view, 6> kTopics = {"contacts", "events", "joints",
+                                                     "quality",  "status", "truth"};
+
+constexpr std::array kDescribe = {
+    ParamSpec{.name = "method",
+              .type = kString,
+              .sentence = "only this method",
+              .default_text = "all methods"},
+};
+constexpr std::array kEvents = {
+    ParamSpec{.name = "count",
+              .type = kInteger,
+              .sentence = "at most so many, the newest",
+              .min = 1,
+              .max = 1000,
+              .default_text = "100"},
+};
+constexpr std::array kExplore = {
+    ParamSpec{.name = "finger",
+              .type = kEnum,
+              .sentence = "the finger that explores",
+              .required = true,
+              .names = NameSource::kFinger},
+    ParamSpec{.name = "criterion",
+              .type = kEnum,
+              .sentence = "what it maximises",
+              .values = kCriteria,
+              .default_text = "manipulability"},
+    ParamSpec{.name = "estimator",
+              .type = kEnum,
+              .sentence = "how it estimates the gradient; secant is the rule as printed",
+              .values = kEstimators,
+              .default_text = "least_squares"},
+    ParamSpec{.name = "seed",
+              .type = kInteger,
+              .sentence = "seed of the random start direction",
+              .min = 0,
+              .max = kMaxSafeInteger,
+              .default_text = "the seed of the run"},
+    ParamSpec{.name = "max_cycles",
+              .type = kInteger,
+              .sentence = "give up after so many cycles",
+              .min = 1,
+              .max = 1e6,
+              .default_text = "parameter exploration.max_cycles"},
+};
+constexpr std::array kHello = {
+    ParamSpec{.name = "protocol",
+              .type = kIntegerPair,
+              .sentence = "lowest and highest version the client speaks",
+              .required = true,
+              .min = 0,
+              .max = 1e6},
+};
+constexpr std::array kJobId = {
+    ParamSpec{.name = "id",
+              .type = kInteger,
+              .sentence = "number of the job",
+              .required = true,
+              .min = 1,
+              .max = kMaxSafeInteger},
+};
+constexpr std::array kJobWait = {
+    ParamSpec{.name = "id",
+              .type = kInteger,
+              .sentence = "number of the job",
+              .required = true,
+              .min = 1,
+              .max = kMaxSafeInteger},
+    ParamSpec{.name = "timeout_s",
+              .type = kNumber,
+              .sentence = "answer with error -32004 after so long (wall clock)",
+              .unit = "s",
+              .min = 0,
+              .max = 1e6,
+              .default_text = "no limit"},
+};
+constexpr std::array kNoiseSet = {
+    ParamSpec{.name = "preset",
+              .type = kEnum,
+              .sentence = "all levels of a preset; other parameters then change single levels",
+              .values = kPresets,
+              .default_text = "the present levels"},
+    ParamSpec{.name = "position_m",
+              .sentence = "contact position, standard deviation per axis",
+              .unit = "m",
+              .min = 0,
+              .max = 0.1,
+              .default_text = "unchanged"},
+    ParamSpec{.name = "normal_rad",
+              .sentence = "contact normal, per tangent axis",
+              .unit = "rad",
+              .min = 0,
+              .max = 1.6,
+              .default_text = "unchanged"},
+    ParamSpec{.name = "force_n",
+              .sentence = "normal force",
+              .unit = "N",
+              .min = 0,
+              .max = 10,
+              .default_text = "unchanged"},
+    ParamSpec{.name = "joint_rad",
+              .sentence = "joint angle",
+              .unit = "rad",
+              .min = 0,
+              .max = 1.6,
+              .default_text = "unchanged"},
+    ParamSpec{.name = "object_position_m",
+              .sentence = "object position, per axis",
+              .unit = "m",
+              .min = 0,
+              .max = 0.1,
+              .default_text = "unchanged"},
+    ParamSpec{.name = "object_rotation_rad",
+              .sentence = "object orientation, per axis",
+              .unit = "rad",
+              .min = 0,
+              .max = 1.6,
+              .default_text = "unchanged"},
+};
+constexpr std::array kParamGet = {
+    ParamSpec{.name = "name",
+              .type = kEnum,
+              .sentence = "the parameter",
+              .names = NameSource::kParameter,
+              .default_text = "all parameters"},
+};
+constexpr std::array kParamSet = {
+    ParamSpec{.name = "name",
+              .type = kEnum,
+              .sentence = "the parameter",
+              .required = true,
+              .names = NameSource::kParameter},
+    ParamSpec{.name = "value",
+              .type = kNumberOrVector3,
+              .sentence = "its new value, in the unit and range that param.get tells",
+              .required = true},
+};
+constexpr std::array kPlot = {
+    ParamSpec{.name = "name",
+              .type = kEnum,
+              .sentence = "the picture",
+              .required = true,
+              .values = kPlots},
+    ParamSpec{.name = "file",
+              .type = kString,
+              .sentence = "file name (not a path), written in the daemon's output directory",
+              .default_text = "NAME.png"},
+    ParamSpec{.name = "last_s",
+              .type = kNumber,
+              .sentence = "only the last so many seconds",
+              .unit = "s",
+              .min = 0.1,
+              .max = 600,
+              .default_text = "everything kept"},
+};
+constexpr std::array kPush = {
+    ParamSpec{.name = "force_n",
+              .type = kVector3,
+              .sentence = "force at the object's centre, in W",
+              .required = true,
+              .unit = "N",
+              .min = -100,
+              .max = 100},
+    ParamSpec{.name = "duration_s",
+              .type = kNumber,
+              .sentence = "how long it acts",
+              .unit = "s",
+              .min = 0.001,
+              .max = 60,
+              .default_text = "0.1"},
+};
+constexpr std::array kReset = {
+    ParamSpec{.name = "seed",
+              .type = kInteger,
+              .sentence = "seed of the new run",
+              .min = 0,
+              .max = kMaxSafeInteger,
+              .default_text = "the present seed"},
+    ParamSpec{.name = "object",
+              .type = kEnum,
+              .sentence = "another object, by name",
+              .names = NameSource::kObject,
+              .default_text = "the present object"},
+};
+constexpr std::array kRotate = {
+    ParamSpec{.name = "angle_rad",
+              .sentence = "turn by this angle, signed; or give turns or continuous",
+              .unit = "rad",
+              .min = -1e4,
+              .max = 1e4,
+              .default_text = "not used"},
+    ParamSpec{.name = "turns",
+              .sentence = "turn so many times, signed",
+              .min = -1000,
+              .max = 1000,
+              .default_text = "not used"},
+    ParamSpec{.name = "continuous",
+              .type = kBool,
+              .sentence = "turn until stopped",
+              .default_text = "false"},
+    ParamSpec{.name = "axis",
+              .type = kVector3,
+              .sentence = "direction in W about which the object turns; any length but zero",
+              .min = -1e6,
+              .max = 1e6,
+              .default_text = "[0, 0, 1]"},
+    ParamSpec{.name = "speed_rad_s",
+              .sentence = "speed of the object while it moves",
+              .unit = "rad/s",
+              .min = 0.001,
+              .max = 10,
+              .default_text = "parameter gait.speed_rad_s"},
+};
+constexpr std::array kStep = {
+    ParamSpec{.name = "ticks",
+              .type = kInteger,
+              .sentence = "how many ticks",
+              .min = 1,
+              .max = 1e9,
+              .default_text = "1"},
+};
+constexpr std::array kSubscribe = {
+    ParamSpec{.name = "topic",
+              .type = kEnum,
+              .sentence = "what to send",
+              .required = true,
+              .values = kTopics},
+    ParamSpec{.name = "rate_hz",
+              .sentence = "samples per second of wall clock; events come at once",
+              .unit = "Hz",
+              .min = 0.1,
+              .max = 100,
+              .default_text = "10"},
+};
+constexpr std::array kUnsubscribe = {
+    ParamSpec{.name = "sub",
+              .type = kInteger,
+              .sentence = "number of the subscription",
+              .required = true,
+              .min = 1,
+              .max = kMaxSafeInteger},
+};
+
+constexpr std::span<const ParamSpec> kNone = {};
+
+constexpr std::array kMethods = {
+    MethodSpec{"contacts", "contacts", "what the controller senses at each fingertip", kNone, false,
+               "tick, time_s, fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
+               "force_command_W_n}}; p_WC_m and normal_W are null without contact"},
+    MethodSpec{"describe", "describe", "every method with its parameters, types, units and ranges",
+               kDescribe, false, "version, protocol, methods, errors"},
+    MethodSpec{"events", "events", "the latest events", kEvents, false,
+               "events: [{tick, t_s, kind, finger, text, ...}], oldest first; dropped"},
+    MethodSpec{"explore", "explore", "improve the grasp by sliding one finger over the surface",
+               kExplore, true, "job"},
+    MethodSpec{"grasp", "grasp", "close the hand on the object and hold it", kNone, true, "job"},
+    MethodSpec{"hello", "hello", "agree on a protocol version (optional)", kHello, false,
+               "protocol, version, server"},
+    MethodSpec{"job.cancel", "job cancel", "end a job", kJobId, false, "the record of the job"},
+    MethodSpec{"job.get", "job show", "the record of a job", kJobId, false,
+               "the record of the job"},
+    MethodSpec{"job.list", "job list", "the last 256 jobs, oldest first", kNone, false,
+               "jobs: [record]"},
+    MethodSpec{"job.wait", "job wait", "wait until a job has ended; the only deferred answer",
+               kJobWait, false, "the record of the job"},
+    MethodSpec{
+        "joints", "joints", "joint angles, rates and torques", kNone, false,
+        "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
+    MethodSpec{"noise.get", "noise show", "noise levels of the sensors", kNone, false,
+               "preset and every level"},
+    MethodSpec{"noise.set", "noise set", "change noise levels", kNoiseSet, false,
+               "preset and every level"},
+    MethodSpec{"param.get", "param get", "values, units, ranges and sources of parameters",
+               kParamGet, false,
+               "parameters: [{name, value, unit, min, max, description, source}], or one of them"},
+    MethodSpec{"param.set", "param set", "change a parameter", kParamSet, false,
+               "{name, value, unit, min, max, description, source}"},
+    MethodSpec{"pause", "pause", "stop the clock of the simulation", kNone, false, "paused, tick"},
+    MethodSpec{"plot", "plot", "draw a picture into the output directory", kPlot, false,
+               "file (name), path, bytes, tick"},
+    MethodSpec{"push", "push", "push the object: a disturbance", kPush, false,
+               "force_n, duration_s"},
+    MethodSpec{"quality", "quality", "quality of the grasp", kNone, false,
+               "tick, time_s, criterion, stability, threshold, load_margin_n, measures, fingers: "
+               "{NAME: {manipulability, load_margin_without_n, joint_limit_margin_rad}}"},
+    MethodSpec{"release", "release", "open the hand", kNone, true, "job"},
+    MethodSpec{"reset", "reset", "start a new run; parameters and noise levels stay", kReset, false,
+               "seed, object"},
+    MethodSpec{"resume", "resume", "let the clock of the simulation run again", kNone, false,
+               "paused, tick"},
+    MethodSpec{"rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
+               "job"},
+    MethodSpec{"shutdown", "down", "stop the daemon cleanly", kNone, false, "stopping"},
+    MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
+               "version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, "
+               "speed, seed, hand, object, job, noise, clients, ..."},
+    MethodSpec{"step", "step", "advance a paused simulation", kStep, true, "job"},
+    MethodSpec{"stop", "stop", "end the current job and keep holding", kNone, false,
+               "job (the one that ends), or null"},
+    MethodSpec{"subscribe", "watch", "receive a topic as notifications", kSubscribe, false, "sub"},
+    MethodSpec{"truth", "truth", "what only the simulator knows", kNone, false,
+               "tick, time_s, object {p_WO_m, q_WO_wxyz, v_m_s, w_rad_s, mass_kg, friction}, "
+               "contacts [{link, finger, p_WC_m, normal_W, force_W_n, depth_m}], gravity_W_m_s2"},
+    MethodSpec{"unsubscribe", "unsubscribe", "end a subscription", kUnsubscribe, false,
+               "sub, seq, dropped"},
+    MethodSpec{"version", "version", "version of the daemon", kNone, false, "version, protocol"},
+};
+
+static_assert(std::ranges::is_sorted(kMethods, {}, &MethodSpec::name));
+static_assert(std::ranges::is_sorted(kTopics));
+
+}  // namespace
+
+std::string_view Name(ParamType type) {
+  switch (type) {
+    case kInteger:
+      return "integer";
+    case kNumber:
+      return "number";
+    case kBool:
+      return "boolean";
+    case kString:
+      return "string";
+    case kEnum:
+      return "name";
+    case kVector3:
+      return "number[3]";
+    case kNumberOrVector3:
+      return "number or number[3]";
+    case kIntegerPair:
+      return "integer[2]";
+  }
+  return "";
+}
+
+std::string_view Name(NameSource source) {
+  switch (source) {
+    case NameSource::kNone:
+      return "";
+    case NameSource::kFinger:
+      return "finger";
+    case NameSource::kObject:
+      return "object";
+    case NameSource::kParameter:
+      return "parameter";
+  }
+  return "";
+}
+
+std::span<const MethodSpec> MethodTable() { return kMethods; }
+
+const MethodSpec* FindMethod(std::string_view name) {
+  const auto it = std::ranges::lower_bound(kMethods, name, {}, &MethodSpec::name);
+  return it != kMethods.end() && it->name == name ? &*it : nullptr;
+}
+
+const ParamSpec* FindParam(const MethodSpec& method, std::string_view name) {
+  for (const ParamSpec& param : method.params)
+    if (param.name == name) return &param;
+  return nullptr;
+}
+
+std::span<const std::string_view> TopicNames() { return kTopics; }
+
+}  // namespace regrasp
