@@ -4,22 +4,16 @@
 /// to one hand and is not in its URDF stands here.
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/common/frames.h"
 #include "core/common/limits.h"
 #include "core/hand/hand_model.h"
+#include "core/hand/model_error.h"
 #include "core/hand/object_model.h"
 
 namespace regrasp {
-
-/// Thrown by every loader of this folder. `what()` names file, element, value and what is allowed.
-class ModelError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct Scenario {
   std::string name;
