@@ -1,0 +1,183 @@
+#include "core/world/collision.h"
+
+#include <algorithm>
+
+namespace regrasp {
+namespace {
+
+constexpr int kMaxPerPair = 4;
+
+void SetOffset(dGeomID geom, dBodyID body, const Isometry3d& X) {
+  const Vector3d p = X.translation();
+  dMatrix3 R;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) R[4 * r + c] = c < 3 ? X.linear()(r, c) : 0.0;
+  if (body != nullptr) {
+    dGeomSetBody(geom, body);
+    dGeomSetOffsetPosition(geom, p.x(), p.y(), p.z());
+    dGeomSetOffsetRotation(geom, R);
+  } else {
+    dGeomSetPosition(geom, p.x(), p.y(), p.z());
+    dGeomSetRotation(geom, R);
+  }
+}
+
+Vector3d MiddleNow(dBodyID body, const Vector3d& p_BM) {
+  const dReal* p = dBodyGetPosition(body);
+  const dReal* R = dBodyGetRotation(body);
+  return {p[0] + R[0] * p_BM.x() + R[1] * p_BM.y() + R[2] * p_BM.z(),
+          p[1] + R[4] * p_BM.x() + R[5] * p_BM.y() + R[6] * p_BM.z(),
+          p[2] + R[8] * p_BM.x() + R[9] * p_BM.y() + R[10] * p_BM.z()};
+}
+
+// Distance of a point from a box, given in the box frame.
+double DistanceToBox(const Vector3d& p, const Vector3d& half) {
+  return (p.cwiseAbs() - half).cwiseMax(0.0).norm();
+}
+
+}  // namespace
+
+Collider::Collider(const HandModel& hand, const Articulation& articulation,
+                   const ObjectModel& object, const std::vector<dBodyID>& bodies,
+                   const std::vector<Isometry3d>& X_WL, dBodyID object_body) {
+  for (std::size_t link = 0; link < hand.links.size(); ++link) {
+    for (const Shape& shape : hand.links[link].shapes) {
+      const int b = articulation.body_of_link[link];
+      Part part;
+      part.link = static_cast<int>(link);
+      part.body = b >= 0 ? bodies[b] : nullptr;
+      Isometry3d X_LS = Isometry3d::Identity();
+      if (shape.kind == Shape::Kind::kBox) {
+        part.box = true;
+        part.half = shape.half_extents;
+        part.bound = shape.half_extents.norm();
+        part.geom = dCreateBox(nullptr, 2 * shape.half_extents.x(), 2 * shape.half_extents.y(),
+                               2 * shape.half_extents.z());
+        X_LS = shape.X_LB;
+      } else {
+        const Vector3d along = shape.b_L - shape.a_L;
+        const double length = along.norm();
+        X_LS.translation() = 0.5 * (shape.a_L + shape.b_L);
+        part.bound = shape.radius + 0.5 * length;
+        if (length > 1e-9) {
+          X_LS.linear() = RotationFromZ(along / length);
+          part.geom = dCreateCapsule(nullptr, shape.radius, length);
+        } else {
+          part.geom = dCreateSphere(nullptr, shape.radius);
+        }
+      }
+      // From the link frame to the frame of the body, or to W for the static palm.
+      Isometry3d X_BL = X_WL[link];
+      if (b >= 0) {
+        X_BL = Isometry3d::Identity();
+        X_BL.translation() = -articulation.bodies[b].p_LB;
+      }
+      const Isometry3d X_BS = X_BL * X_LS;
+      SetOffset(part.geom, part.body, X_BS);
+      part.X_WS = X_BS;
+      part.p_BM = X_BS.translation();
+      part.p_WM = part.body ? MiddleNow(part.body, part.p_BM) : part.p_BM;
+      parts_.push_back(part);
+    }
+  }
+
+  switch (object.kind) {
+    case ObjectModel::Kind::kSphere:
+      object_.geom = dCreateSphere(nullptr, object.radius);
+      break;
+    case ObjectModel::Kind::kCapsule:
+      object_.geom = dCreateCapsule(nullptr, object.radius, 2 * object.half_length);
+      break;
+    case ObjectModel::Kind::kBox:
+      object_.geom = dCreateBox(nullptr, 2 * object.half_extents.x(), 2 * object.half_extents.y(),
+                                2 * object.half_extents.z());
+      object_.box = true;
+      object_.half = object.half_extents;
+      break;
+    case ObjectModel::Kind::kMesh:
+      for (const Vector3d& v : object.vertices_O)
+        mesh_vertices_.insert(mesh_vertices_.end(), {v.x(), v.y(), v.z()});
+      for (const Eigen::Vector3i& t : object.triangles)
+        for (int k = 0; k < 3; ++k) mesh_indices_.push_back(static_cast<dTriIndex>(t[k]));
+      mesh_ = dGeomTriMeshDataCreate();
+      dGeomTriMeshDataBuildDouble(mesh_, mesh_vertices_.data(), 3 * sizeof(double),
+                                  static_cast<int>(object.vertices_O.size()), mesh_indices_.data(),
+                                  static_cast<int>(mesh_indices_.size()), 3 * sizeof(dTriIndex));
+      object_.geom = dCreateTriMesh(nullptr, mesh_, nullptr, nullptr, nullptr);
+      object_.box = true;  // may rest on a box with several contacts
+      break;
+  }
+  object_.body = object_body;
+  object_.bound = object.bounding_radius;
+  dGeomSetBody(object_.geom, object_body);
+
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    for (std::size_t j = i + 1; j < parts_.size(); ++j) {
+      const Part &a = parts_[i], &b = parts_[j];
+      if (a.body == b.body) continue;
+      const int body_a = articulation.body_of_link[a.link];
+      const int body_b = articulation.body_of_link[b.link];
+      const bool neighbours = (body_a >= 0 && articulation.bodies[body_a].parent == body_b) ||
+                              (body_b >= 0 && articulation.bodies[body_b].parent == body_a);
+      dContactGeom unused[kMaxPerPair];
+      if (neighbours || Contacts(a, b, unused) > 0) continue;
+      pairs_.push_back({static_cast<int>(i), static_cast<int>(j)});
+    }
+  }
+}
+
+Collider::~Collider() {
+  for (Part& part : parts_)
+    if (part.geom) dGeomDestroy(part.geom);
+  if (object_.geom) dGeomDestroy(object_.geom);
+  if (mesh_) dGeomTriMeshDataDestroy(mesh_);
+}
+
+void Collider::Abandon() {
+  for (Part& part : parts_) part.geom = nullptr;
+  object_.geom = nullptr;
+  mesh_ = nullptr;
+}
+
+bool Collider::MayTouch(const Part& a, const Part& b) const {
+  const double reach = a.bound + b.bound;
+  if ((a.p_WM - b.p_WM).squaredNorm() > reach * reach) return false;
+  if (a.box && a.body == nullptr)
+    return DistanceToBox(a.X_WS.linear().transpose() * (b.p_WM - a.X_WS.translation()), a.half) <=
+           b.bound;
+  return true;
+}
+
+int Collider::Contacts(const Part& a, const Part& b, dContactGeom* out) {
+  const int wanted = a.box && b.box ? kMaxPerPair : 1;
+  dContactGeom found[8];
+  const int n = dCollide(a.geom, b.geom, 8, found, sizeof(dContactGeom));
+  std::stable_sort(found, found + n,
+                   [](const dContactGeom& x, const dContactGeom& y) { return x.depth > y.depth; });
+  const int kept = std::min(n, wanted);
+  std::copy(found, found + kept, out);
+  return kept;
+}
+
+void Collider::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
+                       FixedVector<LinkHit, kMaxLinkHits>* link_hits) {
+  object_hits->clear();
+  link_hits->clear();
+  for (Part& part : parts_)
+    if (part.body) part.p_WM = MiddleNow(part.body, part.p_BM);
+  object_.p_WM = MiddleNow(object_.body, Vector3d::Zero());
+  dContactGeom found[kMaxPerPair];
+  for (const Part& part : parts_) {
+    if (!MayTouch(part, object_)) continue;
+    const int n = Contacts(object_, part, found);
+    for (int k = 0; k < n; ++k) object_hits->push_back({part.link, part.body, found[k]});
+  }
+  for (const Pair& pair : pairs_) {
+    const Part &a = parts_[pair.a], &b = parts_[pair.b];
+    if (!MayTouch(a, b)) continue;
+    const int n = Contacts(a, b, found);
+    for (int k = 0; k < n; ++k) link_hits->push_back({a.body, b.body, found[k]});
+  }
+}
+
+}  // namespace regrasp
