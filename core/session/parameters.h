@@ -41,6 +41,10 @@ struct ParameterInfo {
   double* (*access)(Parameters&);  ///< first component
 };
 
+struct LoadedScenario;
+/// The compiled-in defaults, with friction and mass of the object model and gravity of the scenario.
+Parameters DefaultParameters(const LoadedScenario& model);
+
 /// Sorted by name.
 std::span<const ParameterInfo> ParameterTable();
 /// Index into the table, or -1.

@@ -1,0 +1,716 @@
+#include "core/session/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "core/common/random.h"
+#include "core/control/grasp_sequence.h"
+#include "core/control/hybrid_controller.h"
+#include "core/exploration/finger_exploration.h"
+#include "core/quality/manipulability.h"
+#include "core/sensing/sensors.h"
+#include "core/session/quality_monitor.h"
+
+namespace regrasp {
+namespace {
+
+constexpr std::uint64_t kStartStream = 1000;  // random stream of the start posture
+constexpr std::size_t kMaxPending = 64;
+constexpr int kJudgeInterval = 10;            // ticks between looks at the truth
+constexpr double kDropContactTime_s = 0.25;   // fewer than two contacts for so long: dropped
+constexpr double kReleaseTime_s = 0.5;
+constexpr double kReleasePull_n = 12.0;       // lets go at once, so that no finger drags on the object
+constexpr double kReleasePullTime_s = 0.01;
+
+/// Filters off: turns noise-free readings into the truth in the controller's own terms.
+ControlParameters Unfiltered(ControlParameters parameters) {
+  parameters.joint_filter_s = parameters.force_filter_s = 0;
+  parameters.contact_filter_s = parameters.pose_filter_s = 0;
+  return parameters;
+}
+
+template <typename... Args>
+void Print(char (&text)[96], const char* format, Args... args) {
+  std::snprintf(text, sizeof(text), format, args...);
+}
+
+class StageClock {
+ public:
+  explicit StageClock(bool on) : on_(on) { Restart(); }
+  double Lap() {
+    if (!on_) return 0;
+    const auto now = std::chrono::steady_clock::now();
+    const double s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return s;
+  }
+
+ private:
+  void Restart() {
+    if (on_) last_ = std::chrono::steady_clock::now();
+  }
+  bool on_;
+  std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace
+
+Verdict Check(CommandType type, SessionState state, bool job_running) {
+  using Kind = Verdict::Kind;
+  const bool faulted = state == SessionState::kFaulted;
+  switch (type) {
+    case CommandType::kReset:
+      return {};
+    case CommandType::kStop:
+    case CommandType::kCancelJob:
+    case CommandType::kNoise:
+    case CommandType::kParameter:
+      if (faulted) return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
+      return {};
+    case CommandType::kPush:
+      if (faulted) return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
+      if (state == SessionState::kDropped || state == SessionState::kIdle)
+        return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
+      return {};
+    case CommandType::kGrasp:
+      if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
+      if (state == SessionState::kHolding)
+        return {Kind::kBadState, "the hand already holds the object", "regrasp release"};
+      if (state != SessionState::kIdle)
+        return {Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+      return {};
+    case CommandType::kRelease:
+      if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
+      if (state != SessionState::kHolding)
+        return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
+      return {};
+    case CommandType::kExplore:
+    case CommandType::kRotate:
+      if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
+      if (state == SessionState::kDropped || faulted)
+        return {Kind::kBadState, "the hand does not hold the object", "regrasp reset"};
+      if (state != SessionState::kHolding)
+        return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
+      return {};
+  }
+  return {};
+}
+
+struct Session::Impl {
+  explicit Impl(SessionConfig c)
+      : config(std::move(c)),
+        hand(config.model.hand),
+        dt(config.world.dt),
+        parameters(config.parameters),
+        noise(config.noise),
+        object(std::make_shared<const ObjectModel>(config.model.object)),
+        estimator(hand, dt),
+        judge(hand, dt),
+        controller(hand, dt),
+        grasp(hand, dt) {
+    Build(config.seed);
+  }
+
+  // ---- construction ---------------------------------------------------------------------------------
+  void Build(std::uint64_t new_seed) {
+    seed = new_seed;
+    RandomStream start(seed, kStartStream);
+    const Scenario& scenario = config.model.scenario;
+    JointVector q0 = scenario.q_preshape;
+    for (int j = 0; j < hand.num_joints(); ++j) {
+      q0[j] += parameters.start.joint_sigma_rad * start.Normal();
+      q0[j] = std::clamp(q0[j], hand.joints[j].lower, hand.joints[j].upper);
+    }
+    Isometry3d X_WO = scenario.X_WO;
+    X_WO.translation() += parameters.start.object_sigma_m * start.Normal3();
+    world = std::make_unique<World>(hand, *object, config.world, q0, X_WO, seed);
+    world->SetStandIn(true);
+    world->SetFriction(parameters.object.friction);
+    world->SetMass(parameters.object.mass_kg);
+    world->SetGravity(parameters.gravity_W);
+    world->MeasureStages(measure);
+    sensors = std::make_unique<Sensors>(hand, dt, seed);
+    sensors->SetNoise(noise);
+    judge_sensors = std::make_unique<Sensors>(hand, dt, 0);
+    estimator.Reset();
+    judge.Reset();
+    controller = HybridController(hand, dt);
+    grasp = GraspSequence(hand, dt);
+    exploration = FingerExploration();
+    monitor = QualityMonitor();
+    q_open = q0;
+    tick = 0;
+    state = SessionState::kIdle;
+    job = JobRecord();
+    push_until = -1;
+    drop_ticks = 0;
+    release_tick = -1;
+    tasks.resize(hand.fingers.size());
+    was_in_contact.fill(false);
+    ToPosture(q_open);
+    torque = JointVector::Zero(hand.num_joints());
+    Sense();
+  }
+
+  void ToPosture(const JointVector& q) {
+    for (int i = 0; i < hand.num_fingers(); ++i) {
+      const auto& joints = hand.fingers[i].joints;
+      tasks[i] = FingerTask();
+      tasks[i].q_target.resize(static_cast<Eigen::Index>(joints.size()));
+      for (std::size_t k = 0; k < joints.size(); ++k) tasks[i].q_target[k] = q[joints[k]];
+    }
+  }
+
+  void HoldAll() {
+    for (FingerTask& task : tasks) {
+      if (task.mode == FingerMode::kPosture) continue;  // never took part in the grasp
+      task.mode = FingerMode::kHold;
+      task.cap = parameters.control.max_normal_force;
+      task.grip = parameters.control.grip_force;
+    }
+  }
+
+  // ---- events and jobs ------------------------------------------------------------------------------
+  template <typename... Args>
+  void Emit(EventKind kind, int finger, double value, const char* format, Args... args) {
+    Event event;
+    event.tick = tick;
+    event.kind = kind;
+    event.finger = finger;
+    event.value = value;
+    Print(event.text, format, args...);
+    events.push_back(event);
+  }
+
+  void Enter(SessionState next) {
+    if (state == next) return;
+    state = next;
+    Emit(EventKind::kState, -1, static_cast<double>(next), "%s", Name(next).data());
+  }
+
+  bool job_running() const { return job.id != 0 && job.state == JobState::kRunning; }
+
+  void StartJob(const Command& command, JobMethod method) {
+    job = JobRecord();
+    job.id = command.job;
+    job.method = method;
+    job.state = JobState::kRunning;
+    job.start_tick = tick;
+    Emit(EventKind::kJobStarted, command.finger, static_cast<double>(job.id), "job %lld: %s",
+         static_cast<long long>(job.id), Name(method).data());
+  }
+
+  void FinishJob(JobState end, const char* error) {
+    if (!job_running()) return;
+    job.state = end;
+    job.end_tick = tick;
+    if (end == JobState::kDone) job.progress = 1;
+    std::snprintf(job.error, sizeof(job.error), "%s", error);
+    Emit(EventKind::kJobFinished, job.explore.finger, static_cast<double>(job.id), "job %lld: %s%s%s",
+         static_cast<long long>(job.id), Name(end).data(), *error ? ": " : "", error);
+    finished.push_back(job);
+  }
+
+  Verdict Refuse(const Command& command, const Verdict& verdict) {
+    const bool makes_job = command.type == CommandType::kGrasp || command.type == CommandType::kRelease ||
+                           command.type == CommandType::kExplore || command.type == CommandType::kRotate;
+    if (makes_job) {
+      JobRecord refused;
+      refused.id = command.job;
+      refused.method = MethodOf(command.type);
+      refused.state = JobState::kFailed;
+      refused.start_tick = refused.end_tick = tick;
+      refused.explore.finger = command.finger;
+      std::snprintf(refused.error, sizeof(refused.error), "%s", verdict.reason);
+      finished.push_back(refused);
+    }
+    Emit(EventKind::kRefused, command.finger, static_cast<double>(command.job), "refused: %s",
+         verdict.reason);
+    return verdict;
+  }
+
+  static JobMethod MethodOf(CommandType type) {
+    switch (type) {
+      case CommandType::kRelease: return JobMethod::kRelease;
+      case CommandType::kExplore: return JobMethod::kExplore;
+      case CommandType::kRotate: return JobMethod::kRotate;
+      default: return JobMethod::kGrasp;
+    }
+  }
+
+  // ---- commands -------------------------------------------------------------------------------------
+  Verdict Apply(const Command& command) {
+    const Verdict verdict = Check(command.type, state, job_running());
+    if (verdict.kind != Verdict::Kind::kAllowed) return Refuse(command, verdict);
+    switch (command.type) {
+      case CommandType::kGrasp:
+        if (!world->stand_in())
+          return Refuse(command, {Verdict::Kind::kBadState, "the object is not presented to the hand",
+                                  "regrasp reset"});
+        StartJob(command, JobMethod::kGrasp);
+        grasp.Start(estimator.estimate());
+        Enter(SessionState::kGrasping);
+        break;
+      case CommandType::kRelease:
+        StartJob(command, JobMethod::kRelease);
+        release_tick = tick;
+        break;
+      case CommandType::kExplore:
+        StartJob(command, JobMethod::kExplore);
+        job.explore.finger = command.finger;
+        job.explore.criterion = command.criterion;
+        job.explore.estimator = command.estimator;
+        job.explore.seed = command.seed;
+        exploration.Start({command.finger, command.criterion, command.estimator, command.seed,
+                           command.max_cycles});
+        Enter(SessionState::kExploring);
+        break;
+      case CommandType::kRotate:
+        return Refuse(command, {Verdict::Kind::kBadState, "rotation is not available", "regrasp explore"});
+      case CommandType::kStop:
+        StopJob();
+        break;
+      case CommandType::kCancelJob:
+        if (job_running() && job.id == command.job) StopJob();
+        break;
+      case CommandType::kNoise:
+        noise = command.noise;
+        sensors->SetNoise(noise);
+        Emit(EventKind::kNoise, -1, 0, "noise %s", NoiseName(noise).data());
+        break;
+      case CommandType::kPush:
+        push_until = tick + static_cast<std::int64_t>(std::lround(command.duration_s / dt));
+        world->SetPush(command.force_W);
+        Emit(EventKind::kPush, -1, command.force_W.norm(), "push %.3g N for %.3g s",
+             command.force_W.norm(), command.duration_s);
+        break;
+      case CommandType::kParameter:
+        SetParameter(command);
+        break;
+      case CommandType::kReset:
+        if (command.object) {
+          object = command.object;
+          parameters.object.friction = object->friction;
+          parameters.object.mass_kg = object->mass;
+        }
+        FinishJob(JobState::kCancelled, "reset");
+        Build(command.seed);
+        Emit(EventKind::kReset, -1, static_cast<double>(seed), "reset: seed %llu, object %s",
+             static_cast<unsigned long long>(seed), object->name.c_str());
+        break;
+    }
+    return verdict;
+  }
+
+  void SetParameter(const Command& command) {
+    const ParameterInfo& info = ParameterTable()[command.parameter];
+    double* p = info.access(parameters);
+    for (int k = 0; k < info.size; ++k) p[k] = command.value[k];
+    world->SetFriction(parameters.object.friction);
+    world->SetMass(parameters.object.mass_kg);
+    world->SetGravity(parameters.gravity_W);
+    Emit(EventKind::kParameter, -1, command.value[0], "%s = %.6g", info.name.data(), command.value[0]);
+  }
+
+  void StopJob() {
+    if (!job_running()) return;
+    switch (job.method) {
+      case JobMethod::kGrasp:
+        FinishJob(JobState::kCancelled, "");
+        if (grasp.phase() < GraspSequence::Phase::kAlone) {
+          ToPosture(q_open);
+          Enter(SessionState::kIdle);
+        } else {
+          Enter(SessionState::kHolding);
+        }
+        break;
+      case JobMethod::kExplore:
+        job.explore.reason = ExploreReason::kCancelled;
+        exploration.Stop();
+        break;
+      default:
+        break;  // letting go takes half a second and is not interrupted
+    }
+  }
+
+  // ---- one tick -------------------------------------------------------------------------------------
+  void Sense() {
+    reading = &sensors->Read(tick, world->state());
+    estimator.Update(*reading, parameters.control);
+  }
+
+  void LookAtTruth() { judge.Update(judge_sensors->Read(tick, world->state()), Unfiltered(parameters.control)); }
+
+  unsigned GraspFingers() const {
+    unsigned bits = 0;
+    for (int i = 0; i < hand.num_fingers(); ++i)
+      if (tasks[i].mode != FingerMode::kPosture) bits |= 1u << i;
+    return bits;
+  }
+
+  void WatchContacts() {
+    for (int i = 0; i < hand.num_fingers(); ++i) {
+      const FingerEstimate& f = estimator.estimate().fingers[i];
+      const bool now = was_in_contact[i] ? f.ticks_without_contact < 20 : f.in_contact;
+      if (now == was_in_contact[i]) continue;
+      was_in_contact[i] = now;
+      Emit(now ? EventKind::kContactMade : EventKind::kContactLost, i, 0, "%s: contact %s",
+           hand.fingers[i].name.c_str(), now ? "made" : "lost");
+    }
+  }
+
+  void WatchDrop() {
+    const bool alone = state == SessionState::kHolding || state == SessionState::kExploring ||
+                       state == SessionState::kRotating ||
+                       (state == SessionState::kGrasping && grasp.phase() == GraspSequence::Phase::kAlone);
+    if (!alone || release_tick >= 0) {
+      drop_ticks = 0;
+      return;
+    }
+    const Estimate& e = estimator.estimate();
+    int touching = 0;
+    for (const FingerEstimate& f : e.fingers) touching += f.in_contact;
+    drop_ticks = touching < 2 ? drop_ticks + 1 : 0;
+    const double distance = (e.p_WO - controller.wrench().p_ref()).norm();
+    if (drop_ticks * dt < kDropContactTime_s && distance < parameters.control.drop_distance) return;
+    if (state == SessionState::kExploring) {
+      job.explore.reason = ExploreReason::kDropped;
+      JudgeExplorationEnd();
+    }
+    exploration = FingerExploration();
+    Emit(EventKind::kDropped, -1, distance, "dropped: object %.0f mm from its place, %d fingers touch",
+         distance * 1e3, touching);
+    FinishJob(JobState::kFailed, "the object was dropped");
+    ToPosture(e.q);  // the hand stops where it is
+    Enter(SessionState::kDropped);
+  }
+
+  double TruePhi() {
+    LookAtTruth();
+    const auto& r = exploration.request();
+    return Objective(r.criterion, r.finger, GraspFingers(), judge.estimate(), parameters.control,
+                     parameters.exploration.stability_weight, exploration.on_stability())
+        .phi;
+  }
+
+  void JudgeExplorationEnd() {
+    job.explore.cycles = exploration.algorithm().cycle();
+    job.explore.phi_final = exploration.phi();
+    job.explore.phi_true_final = TruePhi();
+  }
+
+  void UpdateExploration() {
+    const bool was_on_stability = exploration.on_stability();
+    exploration.Update(estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
+                       dt, &controller, &tasks);
+    const int finger = exploration.request().finger;
+    if (exploration.on_stability() != was_on_stability)
+      Emit(EventKind::kCriterion, finger, exploration.on_stability(), "objective: %s",
+           exploration.on_stability() ? "stability" : "manipulability");
+    const FingerEstimate& truth = judge.estimate().fingers[finger];
+    if (exploration.slide_began()) {
+      job.explore.phi_initial = exploration.phi_initial();
+      job.explore.phi_true_initial = TruePhi();
+      p_path = truth.p_WC;
+    }
+    if (exploration.phase() == FingerExploration::Phase::kSlide && tick % kJudgeInterval == 0) {
+      job.explore.path_length_m += (truth.p_WC - p_path).norm();
+      p_path = truth.p_WC;
+      const double limit = job.explore.cycles > 0 ? job.explore.cycles : parameters.exploration.max_cycles;
+      job.progress = std::min(0.99, exploration.algorithm().cycle() / limit);
+    }
+    if (exploration.slide_ended()) {
+      JudgeExplorationEnd();
+      job.explore.phi_final = exploration.phi_final();
+      switch (exploration.end()) {
+        case FingerExploration::End::kGradient: job.explore.reason = ExploreReason::kGradient; break;
+        case FingerExploration::End::kMaxCycles: job.explore.reason = ExploreReason::kMaxCycles; break;
+        case FingerExploration::End::kContactLost: job.explore.reason = ExploreReason::kContactLost; break;
+        case FingerExploration::End::kNone: break;  // stopped: cancelled
+      }
+      job.explore.converged = job.explore.reason == ExploreReason::kGradient;
+    }
+    if (exploration.phase() != FingerExploration::Phase::kDone) return;
+    exploration = FingerExploration();
+    const ExploreReason reason = job.explore.reason;
+    if (reason == ExploreReason::kCancelled) {
+      FinishJob(JobState::kCancelled, "");
+    } else if (reason == ExploreReason::kContactLost) {
+      FinishJob(JobState::kFailed, "the exploring finger lost contact");
+    } else {
+      FinishJob(JobState::kDone, "");
+    }
+    Enter(SessionState::kHolding);
+  }
+
+  void UpdateGrasp() {
+    grasp.Update(estimator.estimate(), config.model.scenario.q_closed, parameters.gravity_W,
+                 parameters.control, &controller, &tasks);
+    job.progress = std::min(0.99, grasp.progress());
+    if (world->stand_in() != grasp.needs_stand_in()) {
+      world->SetStandIn(grasp.needs_stand_in());
+      Emit(EventKind::kStandIn, -1, world->stand_in(), "stand-in %s",
+           world->stand_in() ? "holds the object" : "let go");
+    }
+    if (grasp.phase() == GraspSequence::Phase::kDone) {
+      FinishJob(JobState::kDone, "");
+      Enter(SessionState::kHolding);
+    } else if (grasp.phase() == GraspSequence::Phase::kFailed) {
+      FinishJob(JobState::kFailed, "fewer than three fingers touched the object");
+      ToPosture(q_open);
+      Enter(SessionState::kIdle);
+    }
+  }
+
+  /// Opens the hand: a short pull away from the surface, then the open posture.
+  void UpdateRelease() {
+    const double time = (tick - release_tick) * dt;
+    if (time == 0) ToPosture(q_open);
+    job.progress = std::min(0.99, time / kReleaseTime_s);
+    if (time < kReleaseTime_s) return;
+    release_tick = -1;
+    FinishJob(JobState::kDone, "");
+    Enter(SessionState::kIdle);
+  }
+
+  void AddReleasePull() {
+    if (release_tick < 0 || (tick - release_tick) * dt >= kReleasePullTime_s) return;
+    for (int i = 0; i < hand.num_fingers(); ++i) {
+      const FingerEstimate& f = estimator.estimate().fingers[i];
+      if (!f.ever_in_contact) continue;
+      const FingerVector tau = f.J.transpose() * (kReleasePull_n * f.normal_W);
+      const auto& joints = hand.fingers[i].joints;
+      for (std::size_t k = 0; k < joints.size(); ++k) torque[joints[k]] += tau[k];
+    }
+  }
+
+  void Tick() {
+    if (state == SessionState::kFaulted) {
+      ++tick;
+      return;
+    }
+    StageClock clock(measure);
+    Sense();
+    if (tick % kJudgeInterval == 0) LookAtTruth();
+    times.sense_s = clock.Lap();
+
+    monitor.Update(estimator.estimate(), GraspFingers(), parameters.gravity_W, parameters.control);
+    WatchContacts();
+    WatchDrop();
+    if (push_until >= 0 && tick >= push_until) {
+      world->SetPush(Vector3d::Zero());
+      push_until = -1;
+    }
+    if (release_tick >= 0) {
+      UpdateRelease();
+    } else if (state == SessionState::kGrasping) {
+      UpdateGrasp();
+    } else if (state == SessionState::kExploring) {
+      UpdateExploration();
+    } else if (state == SessionState::kHolding) {
+      HoldAll();
+    }
+    torque = controller.Update(estimator.estimate(), tasks, ObjectMotion{}, parameters.gravity_W,
+                               parameters.control);
+    AddReleasePull();
+    times.control_s = clock.Lap();
+
+    world->SetTorque(torque);
+    const StepStatus status = world->Step();
+    ++tick;
+    times.collide_s = world->stage_times().collide_s;
+    times.step_s = world->stage_times().step_s;
+    if (status == StepStatus::kFault) {
+      Emit(EventKind::kFault, -1, 0, "simulation fault: %.60s", world->fault_message());
+      FinishJob(JobState::kFailed, "simulation fault");
+      Enter(SessionState::kFaulted);
+    }
+  }
+
+  // ---- outside --------------------------------------------------------------------------------------
+  FingerRole RoleOf(int finger) const {
+    switch (tasks[finger].mode) {
+      case FingerMode::kHold:
+      case FingerMode::kTouch: return FingerRole::kHold;
+      case FingerMode::kSlide:
+        return state == SessionState::kExploring ? FingerRole::kExplore : FingerRole::kMove;
+      case FingerMode::kReach: return FingerRole::kMove;
+      case FingerMode::kPosture: return FingerRole::kFree;
+    }
+    return FingerRole::kFree;
+  }
+
+  void Snapshot(Frame* frame) const {
+    Frame& f = *frame;
+    f.tick = tick;
+    f.time_s = static_cast<double>(tick) * dt;
+    f.state_hash = 0;
+    f.state = state;
+    f.seed = seed;
+    f.noise = noise;
+    f.stand_in = world->stand_in();
+    f.num_fingers = hand.num_fingers();
+    const WorldState& truth = world->state();
+    const Estimate& e = estimator.estimate();
+    f.q_sensed = e.q;
+    f.q = truth.q;
+    f.qdot = truth.qdot;
+    f.torque = truth.torque;
+    f.p_WO_sensed = e.p_WO;
+    f.q_WO_sensed = e.q_WO;
+    f.p_WO = truth.p_WO;
+    f.q_WO = truth.q_WO;
+    f.v_WO = truth.v_WO;
+    f.w_WO = truth.w_WO;
+    f.p_WO_reference = controller.wrench().p_ref();
+    f.mass_kg = world->mass_kg();
+    f.friction = world->friction();
+    f.gravity_W = world->gravity_W();
+    f.stability = monitor.stability();
+    f.contacts.clear();
+    for (const ObjectContact& c : truth.contacts)
+      f.contacts.push_back({c.link, c.finger, c.p_WC, c.normal_W, c.force_W, c.depth});
+    KinematicsData true_kinematics;
+    ForwardKinematics(hand, truth.q, &true_kinematics);
+    f.fingers.resize(hand.fingers.size());
+    for (int i = 0; i < hand.num_fingers(); ++i) {
+      FingerFrame& ff = f.fingers[i];
+      const FingerEstimate& fe = e.fingers[i];
+      ff = FingerFrame();
+      ff.role = RoleOf(i);
+      ff.in_contact = fe.in_contact;
+      ff.p_WC = fe.p_WC;
+      ff.normal_W = fe.normal_W;
+      ff.force = fe.force;
+      ff.f_command_W = controller.commanded_forces()[i];
+      ff.manipulability = fe.manipulability;
+      ff.load_margin_without = monitor.load_margin_without(i);
+      ff.joint_limit_margin = 1e9;
+      for (int j : hand.fingers[i].joints)
+        ff.joint_limit_margin = std::min({ff.joint_limit_margin, truth.q[j] - hand.joints[j].lower,
+                                          hand.joints[j].upper - truth.q[j]});
+      ff.true_tip_W = FingertipCentre(hand, true_kinematics, i);
+      double weight = 0;
+      Vector3d p = Vector3d::Zero(), n = Vector3d::Zero();
+      for (const ObjectContact& c : truth.contacts) {
+        if (c.finger != i) continue;
+        const double w = c.force_W.norm() + 1e-9;
+        p += w * c.p_WC;
+        n += w * c.normal_W;
+        weight += w;
+        ff.true_force_W += c.force_W;
+      }
+      ff.true_contact = weight > 0;
+      if (!ff.true_contact) continue;
+      ff.true_p_WC = p / weight;
+      ff.true_normal_W = n.normalized();
+      ff.true_manipulability =
+          Manipulability(PointJacobian(hand, true_kinematics, i, ff.true_p_WC)) / kManipulabilityUnit;
+    }
+    f.exploration = ExplorationFrame();
+    const auto phase = exploration.phase();
+    if (phase != FingerExploration::Phase::kIdle && phase != FingerExploration::Phase::kDone) {
+      ExplorationFrame& x = f.exploration;
+      x.active = true;
+      x.finger = exploration.request().finger;
+      x.criterion = exploration.request().criterion;
+      x.on_stability = exploration.on_stability();
+      x.cycle = exploration.algorithm().cycle();
+      x.phi = exploration.phi();
+      x.gradient_norm = exploration.algorithm().gradient_norm();
+      x.epsilon = parameters.exploration.epsilon;
+      x.gradient_W = exploration.algorithm().gradient_W();
+    }
+    f.job = job;
+  }
+
+  std::uint64_t Hash() const {
+    StateHasher hasher;
+    hasher.Add(tick);
+    hasher.Add(seed);
+    hasher.Add(state);
+    world->AddTo(&hasher);
+    sensors->AddTo(&hasher);
+    estimator.AddTo(&hasher);
+    controller.AddTo(&hasher);
+    grasp.AddTo(&hasher);
+    exploration.AddTo(&hasher);
+    monitor.AddTo(&hasher);
+    hasher.Add(push_until);
+    hasher.Add(release_tick);
+    return hasher.Digest();
+  }
+
+  SessionConfig config;
+  const HandModel& hand;
+  double dt;
+  Parameters parameters;
+  NoiseLevels noise;
+  std::uint64_t seed = 0;
+  std::shared_ptr<const ObjectModel> object;
+  std::unique_ptr<World> world;
+  std::unique_ptr<Sensors> sensors, judge_sensors;
+  const SensorReading* reading = nullptr;
+  StateEstimator estimator;  // what the controller believes
+  StateEstimator judge;      // the same from noise-free readings, never seen by the controller
+  HybridController controller;
+  GraspSequence grasp;
+  FingerExploration exploration;
+  QualityMonitor monitor;
+  FingerTasks tasks;
+  JointVector q_open, torque;
+  std::int64_t tick = 0, push_until = -1, release_tick = -1;
+  int drop_ticks = 0;
+  SessionState state = SessionState::kIdle;
+  JobRecord job;
+  Vector3d p_path = Vector3d::Zero();
+  std::array<bool, kMaxFingers> was_in_contact{};
+  FixedVector<Event, kMaxPending> events, events_out;
+  FixedVector<JobRecord, kMaxPending> finished, finished_out;
+  bool measure = false;
+  StageTimes times;
+};
+
+Session::Session(SessionConfig config) : impl_(std::make_unique<Impl>(std::move(config))) {}
+Session::~Session() = default;
+
+Verdict Session::Apply(const Command& command) { return impl_->Apply(command); }
+void Session::Tick() { impl_->Tick(); }
+std::int64_t Session::tick() const { return impl_->tick; }
+SessionState Session::state() const { return impl_->state; }
+bool Session::job_running() const { return impl_->job_running(); }
+const SessionConfig& Session::config() const { return impl_->config; }
+const Parameters& Session::parameters() const { return impl_->parameters; }
+const NoiseLevels& Session::noise() const { return impl_->noise; }
+std::uint64_t Session::seed() const { return impl_->seed; }
+const std::string& Session::object_name() const { return impl_->object->name; }
+
+void Session::Snapshot(Frame* frame, bool with_hash) const {
+  impl_->Snapshot(frame);
+  if (with_hash) frame->state_hash = impl_->Hash();
+}
+
+std::uint64_t Session::StateHash() const { return impl_->Hash(); }
+
+std::span<const Event> Session::TakeEvents() {
+  impl_->events_out = impl_->events;
+  impl_->events.clear();
+  return {impl_->events_out.data(), impl_->events_out.size()};
+}
+
+std::span<const JobRecord> Session::TakeFinishedJobs() {
+  impl_->finished_out = impl_->finished;
+  impl_->finished.clear();
+  return {impl_->finished_out.data(), impl_->finished_out.size()};
+}
+
+void Session::MeasureStages(bool on) {
+  impl_->measure = on;
+  impl_->world->MeasureStages(on);
+}
+Session::StageTimes Session::stage_times() const { return impl_->times; }
+const WorldState& Session::truth() const { return impl_->world->state(); }
+const World& Session::world() const { return *impl_->world; }
+
+}  // namespace regrasp
