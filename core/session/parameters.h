@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/common/frames.h"
 #include "core/control/control_parameters.h"
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"

@@ -1,0 +1,310 @@
+// Measures what the README claims, straight on the session (no daemon): every table names this command.
+//   claims hold      [--seeds N] [--first S] [--seconds T]   six gravity directions
+//   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg
+//   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
+//   claims repeat    [--seconds T]                            state hash of the same run, twice
+// Common: --noise PRESET --object NAME --set NAME=VALUE (repeatable) --exact --rows (a line per trial).
+// Trials run in two processes (--jobs N); each is reproducible alone from its seed.
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/hand/scenario.h"
+#include "core/session/session.h"
+
+using namespace regrasp;
+
+namespace {
+
+struct Options {
+  std::string what, noise = "paper", object, criterion = "manipulability", estimator = "least_squares", finger;
+  int seeds = 5, jobs = 2;
+  std::uint64_t first = 1;
+  double seconds = 60;
+  bool exact = false, rows = false;
+  std::vector<std::pair<std::string, double>> set;
+};
+
+constexpr double kFailed = -1;
+
+SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string& object) {
+  SessionConfig config;
+  config.model = LoadScenario("shadow", object, ModelSearchPath());
+  config.parameters = DefaultParameters(config.model);
+  config.noise = NoisePreset(o.noise).value();
+  config.seed = seed;
+  if (o.exact) config.world.stepper = Stepper::kExact;
+  for (const auto& [name, value] : o.set) {
+    const int index = FindParameter(name);
+    if (index < 0) {
+      std::fprintf(stderr, "claims: unknown parameter %s\n", name.c_str());
+      std::exit(2);
+    }
+    *ParameterTable()[index].access(config.parameters) = value;
+  }
+  return config;
+}
+
+/// Gives a job command and ticks until it ends. Returns its record.
+JobRecord RunJob(Session& session, Command command, double max_s) {
+  static std::int64_t next_id = 1;
+  command.job = next_id++;
+  session.Apply(command);
+  const auto limit = session.tick() + static_cast<std::int64_t>(max_s * 1000);
+  while (session.tick() < limit) {
+    session.Tick();
+    session.TakeEvents();
+    for (const JobRecord& job : session.TakeFinishedJobs())
+      if (job.id == command.job) return job;
+  }
+  JobRecord late;
+  late.state = JobState::kFailed;
+  std::snprintf(late.error, sizeof(late.error), "not finished after %.0f s", max_s);
+  return late;
+}
+
+bool Grasp(Session& session) {
+  Command grasp;
+  grasp.type = CommandType::kGrasp;
+  return RunJob(session, grasp, 20).state == JobState::kDone;
+}
+
+using Row = std::vector<double>;
+
+/// Runs `trial(k)` for k in [0, n) in `jobs` processes; rows come back in order.
+std::vector<Row> Parallel(int n, int jobs, const std::function<Row(int)>& trial) {
+  std::vector<Row> rows(n);
+  std::vector<int> pipes;
+  for (int w = 0; w < jobs; ++w) {
+    int fd[2];
+    if (pipe(fd) != 0) std::exit(74);
+    if (fork() == 0) {
+      close(fd[0]);
+      FILE* out = fdopen(fd[1], "w");
+      for (int k = w; k < n; k += jobs) {
+        const Row row = trial(k);
+        std::fprintf(out, "%d", k);
+        for (double v : row) std::fprintf(out, " %.17g", v);
+        std::fprintf(out, "\n");
+        std::fflush(out);
+      }
+      std::fclose(out);
+      _exit(0);
+    }
+    close(fd[1]);
+    pipes.push_back(fd[0]);
+  }
+  for (int fd : pipes) {
+    FILE* in = fdopen(fd, "r");
+    char line[4096];
+    while (std::fgets(line, sizeof(line), in)) {
+      char* p = line;
+      const int k = static_cast<int>(std::strtol(p, &p, 10));
+      for (char* end = p; ; p = end) {
+        const double v = std::strtod(p, &end);
+        if (end == p) break;
+        rows[k].push_back(v);
+      }
+    }
+    std::fclose(in);
+  }
+  while (wait(nullptr) > 0) {}
+  return rows;
+}
+
+double Mean(const std::vector<double>& v) {
+  double sum = 0;
+  for (double x : v) sum += x;
+  return v.empty() ? 0 : sum / static_cast<double>(v.size());
+}
+double Max(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); }
+
+/// {held, max deviation mm, rms mm, mean force residual / weight, foreign contacts, largest link-link count}
+Row HoldTrial(Session& session, double seconds) {
+  if (!Grasp(session)) return {kFailed, 0, 0, 0, 0, 0};
+  const Vector3d p0 = session.truth().p_WO;
+  double worst = 0, square = 0, foreign = 0, links = 0;
+  Vector3d force = Vector3d::Zero();
+  const int ticks = static_cast<int>(seconds * 1000);
+  for (int k = 0; k < ticks; ++k) {
+    session.Tick();
+    session.TakeEvents();
+    const double d = (session.truth().p_WO - p0).norm();
+    worst = std::max(worst, d);
+    square += d * d;
+    for (const ObjectContact& c : session.truth().contacts) {
+      force += c.force_W;
+      foreign += c.finger < 0;
+    }
+    links = std::max(links, static_cast<double>(session.truth().link_link_contacts));
+  }
+  const double weight = session.world().mass_kg() * session.world().gravity_W().norm();
+  const Vector3d mean_force = force / ticks;
+  const double residual =
+      (mean_force + session.world().mass_kg() * session.world().gravity_W()).norm() / weight;
+  return {session.state() == SessionState::kHolding ? 1.0 : 0.0, worst * 1e3,
+          std::sqrt(square / ticks) * 1e3, residual, foreign, links};
+}
+
+void PrintHold(const char* label, const std::vector<Row>& rows) {
+  int held = 0, failed = 0;
+  std::vector<double> worst, rms, residual, foreign, links;
+  for (const Row& r : rows) {
+    if (r.empty() || r[0] == kFailed) { ++failed; continue; }
+    held += r[0] == 1.0;
+    worst.push_back(r[1]);
+    rms.push_back(r[2]);
+    residual.push_back(r[3]);
+    foreign.push_back(r[4]);
+    links.push_back(r[5]);
+  }
+  std::printf("%-16s held %2d/%-2zu  not grasped %d  max deviation %5.2f mm  rms %5.2f mm  "
+              "force balance %5.2f %%  foreign contacts %.0f  link-link %.0f\n",
+              label, held, rows.size(), failed, Max(worst), Mean(rms), 100 * Max(residual), Max(foreign),
+              Max(links));
+  std::fflush(stdout);
+}
+
+int Hold(const Options& o) {
+  const std::pair<const char*, Vector3d> directions[] = {
+      {"gravity +x", {9.81, 0, 0}}, {"gravity -x", {-9.81, 0, 0}}, {"gravity +y", {0, 9.81, 0}},
+      {"gravity -y", {0, -9.81, 0}}, {"gravity +z", {0, 0, 9.81}}, {"gravity -z", {0, 0, -9.81}}};
+  for (const auto& [label, gravity] : directions) {
+    const auto rows = Parallel(o.seeds, o.jobs, [&, g = gravity](int k) {
+      SessionConfig config = MakeConfig(o, o.first + k, o.object);
+      config.parameters.gravity_W = g;
+      Session session(std::move(config));
+      return HoldTrial(session, o.seconds);
+    });
+    PrintHold(label, rows);
+  }
+  return 0;
+}
+
+int Objects(const Options& o) {
+  for (const char* object : {"sphere_45mm", "sphere", "sphere_60mm", "egg"}) {
+    const auto rows = Parallel(o.seeds, o.jobs, [&](int k) {
+      Session session(MakeConfig(o, o.first + k, object));
+      return HoldTrial(session, o.seconds);
+    });
+    PrintHold(object, rows);
+  }
+  return 0;
+}
+
+int Explore(const Options& o) {
+  const SessionConfig probe = MakeConfig(o, 1, o.object);
+  int total_rose = 0, total = 0;
+  for (int finger = 0; finger < probe.model.hand.num_fingers(); ++finger) {
+    const std::string& name = probe.model.hand.fingers[finger].name;
+    if (!o.finger.empty() && o.finger != name) continue;
+    const auto rows = Parallel(o.seeds, o.jobs, [&](int k) -> Row {
+      Session session(MakeConfig(o, o.first + k, o.object));
+      if (!Grasp(session)) return {kFailed};
+      Command c;
+      c.type = CommandType::kExplore;
+      c.finger = finger;
+      c.seed = o.first + k;
+      for (Criterion criterion : {Criterion::kManipulability, Criterion::kStability, Criterion::kSwitched,
+                                  Criterion::kCombined})
+        if (Name(criterion) == o.criterion) c.criterion = criterion;
+      c.estimator = o.estimator == "secant" ? Estimator::kSecant : Estimator::kLeastSquares;
+      const Vector3d p0 = session.truth().p_WO;
+      const JobRecord job = RunJob(session, c, 60);
+      for (int t = 0; t < 1000; ++t) session.Tick();
+      return {static_cast<double>(job.state == JobState::kDone),
+              static_cast<double>(job.explore.reason),
+              job.explore.phi_true_initial,
+              job.explore.phi_true_final,
+              job.explore.path_length_m * 1e3,
+              static_cast<double>(job.explore.cycles),
+              static_cast<double>(session.state() == SessionState::kDropped),
+              (session.truth().p_WO - p0).norm() * 1e3};
+    });
+    int rose = 0, failed = 0, dropped = 0, converged = 0;
+    std::vector<double> gain, cycles, moved;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Row& r = rows[k];
+      if (r.empty() || r[0] == kFailed) { ++failed; continue; }
+      if (o.rows) {
+        std::printf("  seed %llu done %.0f reason %s phi %.4f -> %.4f path %.1f mm cycles %.0f dropped %.0f moved %.2f mm\n",
+                    static_cast<unsigned long long>(o.first + k), r[0],
+                    Name(static_cast<ExploreReason>(static_cast<int>(r[1]))).data(), r[2], r[3], r[4], r[5], r[6], r[7]);
+      }
+      rose += r[3] > r[2] && r[6] == 0;
+      dropped += r[6] != 0;
+      converged += static_cast<ExploreReason>(static_cast<int>(r[1])) == ExploreReason::kGradient;
+      gain.push_back(r[3] / r[2] - 1);
+      cycles.push_back(r[5]);
+      moved.push_back(r[7]);
+    }
+    std::printf("%-8s phi rose %2d/%-2zu  dropped %d  not grasped %d  converged %d  gain mean %+.1f %%  "
+                "cycles mean %.0f  object moved max %.2f mm\n",
+                name.c_str(), rose, rows.size(), dropped, failed, converged, 100 * Mean(gain), Mean(cycles), Max(moved));
+    std::fflush(stdout);
+    total_rose += rose;
+    total += static_cast<int>(rows.size());
+  }
+  std::printf("all      phi rose %d/%d\n", total_rose, total);
+  return 0;
+}
+
+int Repeat(const Options& o) {
+  std::uint64_t hash[2];
+  for (std::uint64_t& h : hash) {
+    Session session(MakeConfig(o, o.first, o.object));
+    Grasp(session);
+    const int ticks = static_cast<int>(o.seconds * 1000);
+    while (session.tick() < ticks) { session.Tick(); session.TakeEvents(); }
+    h = session.StateHash();
+    std::printf("state hash after %.0f s: %016llx (%s)\n", o.seconds, static_cast<unsigned long long>(h),
+                Name(session.state()).data());
+  }
+  return hash[0] == hash[1] ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options o;
+  if (argc > 1) o.what = argv[1];
+  for (int i = 2; i < argc; ++i) {
+    const std::string a = argv[i];
+    auto next = [&]() -> std::string {
+      if (++i >= argc) { std::fprintf(stderr, "claims: %s needs a value\n", a.c_str()); std::exit(2); }
+      return argv[i];
+    };
+    if (a == "--seeds") o.seeds = std::stoi(next());
+    else if (a == "--first") o.first = std::stoull(next());
+    else if (a == "--seconds") o.seconds = std::stod(next());
+    else if (a == "--noise") o.noise = next();
+    else if (a == "--object") o.object = next();
+    else if (a == "--criterion") o.criterion = next();
+    else if (a == "--estimator") o.estimator = next();
+    else if (a == "--finger") o.finger = next();
+    else if (a == "--jobs") o.jobs = std::stoi(next());
+    else if (a == "--exact") o.exact = true;
+    else if (a == "--rows") o.rows = true;
+    else if (a == "--set") {
+      const std::string s = next();
+      const auto eq = s.find('=');
+      o.set.emplace_back(s.substr(0, eq), std::stod(s.substr(eq + 1)));
+    } else { std::fprintf(stderr, "claims: unknown option %s\n", a.c_str()); return 2; }
+  }
+  if (o.what == "hold") return Hold(o);
+  if (o.what == "objects") return Objects(o);
+  if (o.what == "explore") return Explore(o);
+  if (o.what == "repeat") return Repeat(o);
+  std::fprintf(stderr, "usage: claims hold|objects|explore|repeat [options]; see the head of bench/claims.cc\n");
+  return 2;
+}
