@@ -80,6 +80,7 @@ struct World::Impl {
   dWorldID world = nullptr;
   dJointGroupID contact_group = nullptr;
   std::vector<dBodyID> bodies;
+  std::vector<dJointID> joints;  // joints[i] is articulation.joints[i]
   dBodyID object_body = nullptr;
   dJointID stand_in_joint = nullptr;
   std::unique_ptr<Collider> collider;
@@ -122,6 +123,9 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
 
   world = dWorldCreate();
   dWorldSetQuickStepNumIterations(world, config.iterations);
+  dWorldSetQuickStepW(world, config.over_relaxation);
+  dWorldSetERP(world, config.joint_erp);
+  dWorldSetCFM(world, config.joint_cfm);
   dWorldSetContactMaxCorrectingVel(world, dInfinity);
   dWorldSetAutoDisableFlag(world, 0);
   // Room for every step there will be, so that no step allocates.
@@ -167,19 +171,21 @@ void World::Impl::BuildHand(const JointVector& q0) {
     const dBodyID parent_body = parent >= 0 ? bodies[parent] : nullptr;
     const Vector3d p = kinematics.p_WJ[plan.first];
     const Vector3d u = kinematics.axis_W[plan.first];
+    dJointID joint = nullptr;
     if (plan.second < 0) {
-      const dJointID joint = dJointCreateHinge(world, nullptr);
+      joint = dJointCreateHinge(world, nullptr);
       dJointAttach(joint, bodies[plan.body], parent_body);
       dJointSetHingeAnchor(joint, p.x(), p.y(), p.z());
       dJointSetHingeAxis(joint, u.x(), u.y(), u.z());
     } else {
       const Vector3d u2 = kinematics.axis_W[plan.second];
-      const dJointID joint = dJointCreateUniversal(world, nullptr);
+      joint = dJointCreateUniversal(world, nullptr);
       dJointAttach(joint, parent_body, bodies[plan.body]);
       dJointSetUniversalAnchor(joint, p.x(), p.y(), p.z());
       dJointSetUniversalAxis1(joint, u.x(), u.y(), u.z());
       dJointSetUniversalAxis2(joint, u2.x(), u2.y(), u2.z());
     }
+    joints.push_back(joint);
   }
   object_body = dBodyCreate(world);
   collider = std::make_unique<Collider>(hand, articulation, object, bodies, X_WL, object_body);
@@ -372,6 +378,25 @@ const WorldState& World::state() const { return impl_->state; }
 double World::mass_kg() const { return impl_->mass; }
 double World::friction() const { return impl_->friction; }
 const Vector3d& World::gravity_W() const { return impl_->gravity_W; }
+
+double World::JointDrift() const {
+  const Impl& w = *impl_;
+  if (w.faulted) return 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < w.joints.size(); ++i) {
+    dVector3 p1, p2;
+    if (w.articulation.joints[i].second < 0) {
+      dJointGetHingeAnchor(w.joints[i], p1);
+      dJointGetHingeAnchor2(w.joints[i], p2);
+    } else {
+      dJointGetUniversalAnchor(w.joints[i], p1);
+      dJointGetUniversalAnchor2(w.joints[i], p2);
+    }
+    largest = std::max(largest, (ToVector(p1) - ToVector(p2)).norm());
+  }
+  return largest;
+}
+
 void World::MeasureStages(bool on) { impl_->measure = on; }
 World::StageTimes World::stage_times() const { return impl_->times; }
 

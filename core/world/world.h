@@ -25,9 +25,12 @@ enum class Stepper {
 struct WorldConfig {
   double dt = 1e-3;                   ///< step [s]
   Stepper stepper = Stepper::kFast;
-  int iterations = 20;                ///< QuickStep iterations
+  int iterations = 15;                ///< QuickStep iterations, at least 10 (why: docs/world.md)
   double contact_stiffness = 4000;    ///< [N/m]
   double contact_damping = 8;         ///< [N s/m]
+  double over_relaxation = 1.3;       ///< QuickStep's SOR parameter
+  double joint_erp = 0.2;             ///< share of a joint's position error removed per step
+  double joint_cfm = 1e-10;           ///< ODE's softness of the joint and friction rows [m/(N s)]
   bool merge_universal = true;        ///< perpendicular joint pairs sharing an anchor become one universal joint
 };
 
@@ -88,6 +91,10 @@ class World {
   double mass_kg() const;
   double friction() const;
   const Vector3d& gravity_W() const;
+
+  /// Largest distance by which the two bodies of a joint have come apart at its anchor [m]: how well the
+  /// stepper keeps the hand together.
+  double JointDrift() const;
 
   /// Seconds the last step spent in collision detection and in the ODE stepper; 0 unless `on`.
   struct StageTimes { double collide_s = 0, step_s = 0; };
