@@ -1,42 +1,74 @@
 #pragma once
 
 /// The noisy sensors: the one place where the simulator's truth becomes what the controller sees.
-/// "Artificial white noise is superimposed on the feedback provided by the physics engine" (Sec. III).
-/// One random stream per sensor, so that changing one level leaves the other sensors' noise unchanged.
+/// "Artificial white noise is superimposed on the feedback provided by the physics engine" (Sec.
+/// III). One random stream per sensor, so that changing one level leaves the other sensors' noise
+/// unchanged.
+///
+/// Sensors sample at kSensorRateHz whatever the physics step: a reading is held until the next
+/// sample is due (at a step longer than a sample, every tick samples once).
+
+#include <array>
+#include <cstdint>
 
 #include "core/common/random.h"
 #include "core/hand/hand_model.h"
+#include "core/hand/kinematics.h"
 #include "core/sensing/noise.h"
 #include "core/sensing/sensor_reading.h"
+#include "core/sensing/taxels.h"
 #include "core/world/world.h"
 
 namespace regrasp {
 
+inline constexpr double kSensorRateHz = 1000;
+/// Largest NoiseLevels::object_delay_frames; more is treated as this.
+inline constexpr int kMaxPoseDelay = 7;
+
 class Sensors {
  public:
+  /// `hand` must outlive the sensors. `dt`: tick [s].
   Sensors(const HandModel& hand, double dt, std::uint64_t seed);
 
-  /// Takes effect at the next Read().
-  void SetNoise(const NoiseLevels& levels) { levels_ = levels; }
+  /// Takes effect at the next sample. Changing the object's rate or delay empties the delay line.
+  void SetNoise(const NoiseLevels& levels);
   const NoiseLevels& noise() const { return levels_; }
 
-  /// One reading per tick. A fingertip is in contact when its tip link touches the object with more
-  /// than 0.01 N; with several contacts, the force-weighted mean is reported. Every stream advances by
-  /// the same number of draws each tick, whatever touches.
+  /// One reading per tick; `tick` never decreases. A fingertip is in contact when its tip link
+  /// presses on the object with more than 0.01 N along the normal; with several contacts, the
+  /// force-weighted mean is reported. Every stream advances by the same number of draws each
+  /// sample, whatever touches.
+  ///
+  /// With taxels (taxel_pitch_m > 0) the contact position, after its noise, snaps to the nearest
+  /// taxel centre, and the normal is opposite to that taxel's outward direction (see taxels.h).
+  ///
+  /// With object_rate_hz > 0 the object pose is sampled when frame floor(t rate) begins and
+  /// reported object_delay_frames later, so that with a delay of 1 the reported pose is 1 to 2
+  /// frames old. Until that many frames exist the oldest one is reported. The delay needs a rate.
   const SensorReading& Read(std::int64_t tick, const WorldState& truth);
 
-  /// Feeds streams, delay line and held values to the hasher.
+  /// Feeds streams, levels, delay line and held values to the hasher.
   void AddTo(StateHasher* hasher) const;
 
  private:
-  struct DelayedPose { Vector3d p = Vector3d::Zero(); Quaterniond q = Quaterniond::Identity(); };
+  struct Pose {
+    Vector3d p = Vector3d::Zero();
+    Quaterniond q = Quaterniond::Identity();
+  };
+  void ReadFingertips(const WorldState& truth);
+  void ReadObject(std::int64_t tick, const WorldState& truth);
+
   const HandModel* hand_;
   double dt_;
   NoiseLevels levels_;
-  RandomStream position_stream_, normal_stream_, force_stream_, joint_stream_, pose_position_stream_,
-      pose_rotation_stream_;
-  FixedVector<DelayedPose, 8> delay_line_;
+  RandomStream position_stream_, normal_stream_, force_stream_, joint_stream_,
+      pose_position_stream_, pose_rotation_stream_;
+  std::int64_t last_sample_ = -1;
+  std::array<Pose, kMaxPoseDelay + 1> pose_frames_;  ///< newest first
+  int num_pose_frames_ = 0;
   std::int64_t last_pose_frame_ = -1;
+  std::array<TipAxes, kMaxFingers> tips_;
+  KinematicsData kinematics_;  ///< of the truth; used only with taxels
   SensorReading reading_;
 };
 
