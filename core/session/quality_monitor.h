@@ -4,7 +4,6 @@
 /// the cheap ones each tick, one load margin per tick in turn, epsilon a few facets at a time.
 
 #include "core/control/estimate.h"
-#include "core/quality/epsilon.h"
 #include "core/session/frame.h"
 
 namespace regrasp {
@@ -21,7 +20,6 @@ class QualityMonitor {
   void AddTo(StateHasher* hasher) const;
 
  private:
-  EpsilonSolver epsilon_;
   StabilityFrame stability_;
   std::array<double, kMaxFingers> load_margin_without_{};
   int turn_ = 0;
