@@ -8,19 +8,21 @@ namespace regrasp {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kUncapped = 1e29;         // a larger cap is none
-constexpr double kDegeneracyShift = 1e-6;  // of the weight: makes the linear programme non-degenerate
-constexpr double kGap = 1e-6;              // of the weight: where a maximisation stops
-constexpr double kMaxSqueeze = 1e5;        // weights: a grasp that needs more does not hold
+constexpr double kUncapped = 1e29;  // a larger cap is none
+constexpr double kDegeneracyShift =
+    1e-6;                            // of the weight: makes the linear programme non-degenerate
+constexpr double kGap = 1e-6;        // of the weight: where a maximisation stops
+constexpr double kMaxSqueeze = 1e5;  // weights: a grasp that needs more does not hold
 constexpr double kPivot = 1e-10;
 constexpr int kMaxPivots = 400;  // per maximisation; typical 5 to 20
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /// Revised simplex over the convex cone of contact wrenches. The columns are all the wrenches
-/// a(u) = G (n + mu u), |u| = 1, of all contacts: infinitely many, but the best one for given prices y has a
-/// closed form, u along the tangential part of y. Every basis is feasible, hence a lower bound.
-/// Rows: 6 of wrench balance, then, with capped normal forces, one per contact. Units: weight, torque_scale.
+/// a(u) = G (n + mu u), |u| = 1, of all contacts: infinitely many, but the best one for given
+/// prices y has a closed form, u along the tangential part of y. Every basis is feasible, hence a
+/// lower bound. Rows: 6 of wrench balance, then, with capped normal forces, one per contact. Units:
+/// weight, torque_scale.
 template <int kMaxRows>
 class ConeSimplex {
  public:
@@ -62,8 +64,8 @@ class ConeSimplex {
     return false;
   }
 
-  /// Phase 2, from the basis of Reach(): the largest delta with target + delta * direction reachable;
-  /// stops as soon as delta exceeds `enough`. Destroys the basis.
+  /// Phase 2, from the basis of Reach(): the largest delta with target + delta * direction
+  /// reachable; stops as soon as delta exceeds `enough`. Destroys the basis.
   double Maximise(const Vector6d& direction, double enough) {
     column_ = -(inverse_.template leftCols<6>() * direction);
     const int row = RatioTest();

@@ -1,14 +1,13 @@
 #include "core/quality/manipulability.h"
 
-#include <cmath>
-
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace regrasp {
 
 double Manipulability(const FingerJacobian& J) {
-  // Cauchy-Binet: det(J Jᵀ) is the sum of the squared 3 x 3 minors of J. No term is negative, so nothing
-  // cancels near a singularity, where det(J Jᵀ) itself may come out below zero.
+  // Cauchy-Binet: det(J Jᵀ) is the sum of the squared 3 x 3 minors of J. No term is negative, so
+  // nothing cancels near a singularity, where det(J Jᵀ) itself may come out below zero.
   double sum = 0.0;
   const Eigen::Index n = J.cols();
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,8 +1,7 @@
 #include "core/quality/stability.h"
 
-#include <cmath>
-
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
 namespace regrasp {
 
@@ -11,8 +10,8 @@ SingularMeasures ComputeSingularMeasures(std::span<const GraspContact> contacts,
   SingularMeasures out;
   if (contacts.size() < 2) return out;
 
-  // t1, t2, n are orthonormal, so G Gᵀ = sum [I, Sᵀ; S, S Sᵀ] with S = [r / torque_scale]x: neither the
-  // normals nor the choice of tangents matters.
+  // t1, t2, n are orthonormal, so G Gᵀ = sum [I, Sᵀ; S, S Sᵀ] with S = [r / torque_scale]x: neither
+  // the normals nor the choice of tangents matters.
   Eigen::Matrix<double, 6, 6> GGt = Eigen::Matrix<double, 6, 6>::Zero();
   for (const GraspContact& contact : contacts) {
     const Vector3d r = contact.position / torque_scale;
