@@ -2,13 +2,13 @@
 
 /// Pictures of a run, drawn with OpenCV (which appears in no header of this folder but canvas.h).
 ///
-/// Every function draws one picture into `path`; the suffix chooses the format (.png, .jpg, .jpeg). The
-/// input is what leaves a session, Frame and Event, oldest first and in one run: a picture never touches
-/// the simulator. All of them may be called from any thread; none keeps state.
+/// Every function draws one picture into `path`; the suffix chooses the format (.png, .jpg, .jpeg).
+/// The input is what leaves a session, Frame and Event, oldest first and in one run: a picture
+/// never touches the simulator. All of them may be called from any thread; none keeps state.
 ///
-/// Errors: std::runtime_error whose text names the path and the cause: nothing to draw (empty history), a
-/// size outside 400 x 300 .. 8000 x 8000 px, a suffix that is not listed, a missing font (package
-/// fonts-dejavu-core), a file that cannot be written.
+/// Errors: std::runtime_error whose text names the path and the cause: nothing to draw (empty
+/// history), a size outside 400 x 300 .. 8000 x 8000 px, a suffix that is not listed, a missing
+/// font (package fonts-dejavu-core), a file that cannot be written.
 
 #include <span>
 #include <string>
@@ -21,18 +21,20 @@
 namespace regrasp {
 
 struct PlotOptions {
-  double last_s = 0;        ///< only the newest seconds of the history; 0 = all [s]
-  int width = 1600;         ///< [px]
-  int height = 1000;        ///< [px]
-  std::string title;        ///< empty: a title that says what the picture shows
-  std::string object_name;  ///< for the caption; empty: left out (PlotContacts and PlotScene know it)
+  double last_s = 0;  ///< only the newest seconds of the history; 0 = all [s]
+  int width = 1600;   ///< [px]
+  int height = 1000;  ///< [px]
+  std::string title;  ///< empty: a title that says what the picture shows
+  std::string
+      object_name;  ///< for the caption; empty: left out (PlotContacts and PlotScene know it)
 };
 
-/// Figure 2 for one run: manipulability phi of the exploring finger (noise-free bold, as sensed light, other
-/// fingers thin), the stability measure with its threshold, the load margin rho, and strips that show the
-/// state of the session and the criterion that is active. Events are numbered marks.
-void PlotQuality(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
-                 const PlotOptions& options, const std::string& path);
+/// Figure 2 for one run: manipulability phi of the exploring finger (noise-free bold, as sensed
+/// light, other fingers thin), the stability measure with its threshold, the load margin rho, and
+/// strips that show the state of the session and the criterion that is active. Events are numbered
+/// marks.
+void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
+                 const HandModel& hand, const PlotOptions& options, const std::string& path);
 
 /// One run of a comparison.
 struct LabelledRun {
@@ -40,24 +42,26 @@ struct LabelledRun {
   std::span<const Frame> frames;  ///< the part before the exploration is cut off
 };
 
-/// Figure 2 of the paper: explorations that start from the same state, one curve each: manipulability of the
-/// exploring finger above, stability of the grasp below. Time counts from the first frame that explores
-/// (from the first frame of a run that never does).
+/// Figure 2 of the paper: explorations that start from the same state, one curve each:
+/// manipulability of the exploring finger above, stability of the grasp below. Time counts from the
+/// first frame that explores (from the first frame of a run that never does).
 void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& hand,
                            const PlotOptions& options, const std::string& path);
 
-/// Figure 3a: the contact points as sensed, in the object's own frame as sensed, one colour per finger, in
-/// a perspective view and two orthogonal views [mm], with the object's outline and the least-squares sphere through
-/// the points.
+/// Figure 3a: the contact points as sensed, in the object's own frame as sensed, one colour per
+/// finger, in a perspective view and two orthogonal views [mm], with the object's outline and the
+/// least-squares sphere through the points.
 void PlotContacts(std::span<const Frame> history, const HandModel& hand, const ObjectModel& object,
                   const PlotOptions& options, const std::string& path);
 
-/// Figure 1: hand, object, contacts and contact forces of one frame (the truth), seen from two sides.
+/// Figure 1: hand, object, contacts and contact forces of one frame (the truth), seen from two
+/// sides.
 void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
                const PlotOptions& options, const std::string& path);
 
 /// Figure 3b: the finger gait over time: object angle (reference and achieved), the role of every
-/// finger, and how far the object is from where control wants it. Also draws runs without a rotation.
+/// finger, and how far the object is from where control wants it. Also draws runs without a
+/// rotation.
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
               const PlotOptions& options, const std::string& path);
 

@@ -1,0 +1,153 @@
+#include "snapshots/axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace regrasp {
+
+std::vector<double> Axis::Ticks() const {
+  std::vector<double> ticks;
+  const double slack = 1e-9 * (hi - lo);
+  for (double k = std::ceil((lo - slack) / step); k * step <= hi + slack; ++k)
+    ticks.push_back(k * step);
+  return ticks;
+}
+
+std::string Axis::TickText(double value) const {
+  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+  if (std::abs(value) < 1e-9 * step) value = 0;
+  const std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
+  return value < 0 ? "\u2212" + text : text;
+}
+
+Axis NiceAxis(double lo, double hi, int ticks, bool round_out, std::string label) {
+  if (!std::isfinite(lo) || !std::isfinite(hi)) lo = 0, hi = 1;
+  if (hi - lo < 1e-9 * std::max(1.0, std::abs(lo))) lo -= 0.5, hi += 0.5;
+  const double raw = (hi - lo) / ticks;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double ratio = raw / power;
+  const double step = power * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
+  if (round_out) {
+    lo = std::floor(lo / step + 1e-9) * step;
+    hi = std::ceil(hi / step - 1e-9) * step;
+  }
+  return {lo, hi, step, std::move(label)};
+}
+
+void Range::Add(double value) {
+  if (!std::isfinite(value)) return;
+  lo = std::min(lo, value);
+  hi = std::max(hi, value);
+}
+
+void Range::Add(std::span<const double> values) {
+  for (double value : values) Add(value);
+}
+
+Range Range::Padded(double below, double above) const {
+  if (empty()) return *this;
+  return {lo - below * (hi - lo), hi + above * (hi - lo)};
+}
+
+void DrawGrid(Canvas* canvas, const Panel& panel, bool x_values) {
+  const Box& a = panel.area;
+  const Pen line{kGridGrey, 1};
+  const double below = a.y + a.height;
+  for (double v : panel.x.Ticks()) {
+    const double x = panel.At(v, 0).x;
+    canvas->Line({x, a.y}, {x, below}, line);
+    if (!x_values) continue;
+    canvas->Line({x, below}, {x, below + 6}, {kInk, 1.5});
+    canvas->Text({x, below + 12}, panel.x.TickText(v),
+                 {.size = 19, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
+  }
+  for (double v : panel.y.Ticks()) {
+    const double y = panel.At(0, v).y;
+    canvas->Line({a.x, y}, {a.x + a.width, y}, line);
+    canvas->Line({a.x - 6, y}, {a.x, y}, {kInk, 1.5});
+    canvas->Text({a.x - 12, y}, panel.y.TickText(v), {.size = 19, .align_x = AlignX::kRight});
+  }
+  if (x_values)
+    canvas->Text({a.x + a.width / 2, below + 44}, panel.x.label,
+                 {.size = 21, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
+  canvas->Text({a.x - 84, a.y + a.height / 2}, panel.y.label,
+               {.size = 21, .align_x = AlignX::kCentre, .upwards = true});
+}
+
+void DrawFrame(Canvas* canvas, const Panel& panel) {
+  const Point2 a = panel.area.tl(), b = panel.area.br();
+  const std::vector<Point2> corners = {a, {b.x, a.y}, b, {a.x, b.y}, a};
+  canvas->Polyline(corners, {kInk, 1.5});
+}
+
+void DrawCurve(Canvas* canvas, const Panel& panel, std::span<const double> xs,
+               std::span<const double> ys, const Pen& pen) {
+  canvas->Clip(panel.area);
+  std::vector<Point2> run;
+  std::vector<Point2> column;  // points that fall into one pixel column
+  const auto flush = [&] {
+    if (column.size() > 4) {
+      auto [high, low] = std::minmax_element(column.begin(), column.end(),
+                                             [](Point2 a, Point2 b) { return a.y < b.y; });
+      if (low < high) std::swap(low, high);
+      column = {column.front(), *high, *low, column.back()};
+    }
+    run.insert(run.end(), column.begin(), column.end());
+    column.clear();
+  };
+  const auto finish = [&] {
+    flush();
+    canvas->Polyline(run, pen);
+    run.clear();
+  };
+  for (std::size_t i = 0; i < xs.size(); ++i) {
+    if (!std::isfinite(ys[i])) {
+      finish();
+      continue;
+    }
+    const Point2 p = panel.At(xs[i], ys[i]);
+    if (!column.empty() && std::floor(p.x) != std::floor(column.front().x)) flush();
+    column.push_back(p);
+  }
+  finish();
+  canvas->Unclip();
+}
+
+LegendEntry LineEntry(std::string text, Pen pen) {
+  return {std::move(text), [pen](Canvas* canvas, Point2 middle) {
+            canvas->Line(middle - Point2(22, 0), middle + Point2(22, 0), pen);
+          }};
+}
+
+LegendEntry MarkEntry(std::string text, Marker marker, Colour colour) {
+  return {std::move(text),
+          [=](Canvas* canvas, Point2 middle) { canvas->Mark(marker, middle, 6.5, colour); }};
+}
+
+double DrawLegend(Canvas* canvas, Point2 at, const std::string& heading,
+                  std::span<const LegendEntry> entries) {
+  double y = at.y;
+  if (!heading.empty()) {
+    canvas->Text({at.x, y + 10}, heading, {.size = 18, .bold = true});
+    y += 30;
+  }
+  for (const LegendEntry& entry : entries) {
+    entry.symbol(canvas, {at.x + 22, y + 10});
+    canvas->Text({at.x + 56, y + 10}, entry.text, {.size = 18});
+    y += 27;
+  }
+  return y;
+}
+
+void DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts) {
+  const double left = 40, room = canvas->width() - 2 * left;
+  const auto fitted = [&](const std::string& text, double size, bool bold) {
+    return std::min(size, size * room / std::max(1.0, canvas->TextWidth(text, size, bold)));
+  };
+  canvas->Text({left, 38}, title, {.size = fitted(title, 28, true), .bold = true});
+  canvas->Text({left, 74}, facts, {.size = fitted(facts, 18, false), .colour = kGrey});
+}
+
+}  // namespace regrasp

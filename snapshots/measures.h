@@ -1,0 +1,81 @@
+#pragma once
+
+/// Columns of numbers taken out of a history. Internal to snapshots/.
+
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/session/frame.h"
+
+namespace regrasp {
+
+inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
+/// value(frame) for every frame; kNoValue leaves a gap in a curve.
+inline std::vector<double> Column(std::span<const Frame> frames,
+                                  const std::function<double(const Frame&)>& value) {
+  std::vector<double> column;
+  column.reserve(frames.size());
+  for (const Frame& frame : frames) column.push_back(value(frame));
+  return column;
+}
+
+inline std::vector<double> Times(std::span<const Frame> frames) {
+  return Column(frames, [](const Frame& frame) { return frame.time_s; });
+}
+
+/// Noise-free manipulability of a finger [10⁻⁴ m³] while it touches the object.
+inline double TrueManipulability(const Frame& frame, int finger) {
+  const auto i = static_cast<std::size_t>(finger);
+  if (finger < 0 || i >= frame.fingers.size() || !frame.fingers[i].true_contact) return kNoValue;
+  return frame.fingers[i].true_manipulability;
+}
+
+/// Manipulability as the controller sees it [10⁻⁴ m³].
+inline double SensedManipulability(const Frame& frame, int finger) {
+  const auto i = static_cast<std::size_t>(finger);
+  if (finger < 0 || i >= frame.fingers.size() || !frame.fingers[i].in_contact) return kNoValue;
+  return frame.fingers[i].manipulability;
+}
+
+/// Whether the fingers hold the object by themselves, so that the measures of a grasp mean
+/// something.
+inline bool Holds(const Frame& frame) {
+  return frame.state == SessionState::kHolding || frame.state == SessionState::kExploring ||
+         frame.state == SessionState::kRotating;
+}
+
+/// The finger that explores, -1 for none.
+inline int ExploringFinger(const Frame& frame) {
+  return frame.exploration.active ? frame.exploration.finger : -1;
+}
+
+/// Axis label of the stability measure that is active in these frames: the one whose values it has.
+inline std::string StabilityLabel(std::span<const Frame> frames) {
+  using Field = double StabilityFrame::*;
+  struct Measure {
+    Field field;
+    const char* label;
+  };
+  static constexpr Measure kMeasures[] = {
+      {&StabilityFrame::min_singular_value, "σ\u2098\u1d62\u2099(G)"},
+      {&StabilityFrame::epsilon, "ε (Ferrari\u2013Canny)"},
+      {&StabilityFrame::sqrt_det, "√det(G Gᵀ)"},
+      {&StabilityFrame::isotropy, "σ\u2098\u1d62\u2099/σ\u2098\u2090\u2093"},
+      {&StabilityFrame::volume, "hull volume"}};
+  for (const Measure& measure : kMeasures) {
+    bool same = true, seen = false;
+    for (const Frame& frame : frames) {
+      if (frame.stability.active == 0) continue;
+      seen = true;
+      same = same && frame.stability.*measure.field == frame.stability.active;
+    }
+    if (seen && same) return std::string("stability  ") + measure.label;
+  }
+  return "stability";
+}
+
+}  // namespace regrasp

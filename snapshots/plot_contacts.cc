@@ -1,0 +1,285 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "snapshots/axes.h"
+#include "snapshots/measures.h"
+#include "snapshots/outline.h"
+#include "snapshots/snapshots.h"
+#include "snapshots/sphere_fit.h"
+#include "snapshots/timeline.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kMm = 1e3;
+constexpr std::size_t kMostPointsDrawn = 5000;
+
+struct Contact {
+  int finger = 0;
+  Vector3d p_OC;  ///< [m]
+};
+
+struct Cloud {
+  std::vector<Contact> points;        ///< all fingers, in order of time
+  std::vector<Vector3d> first, last;  ///< of each finger [m]; meaningless without a count
+  std::vector<std::size_t> count;     ///< of each finger
+  std::size_t stride = 1;             ///< every stride-th point is drawn
+};
+
+Cloud Collect(std::span<const Frame> frames, const HandModel& hand) {
+  Cloud cloud;
+  const auto n = static_cast<std::size_t>(hand.num_fingers());
+  cloud.first.resize(n);
+  cloud.last.resize(n);
+  cloud.count.resize(n, 0);
+  for (const Frame& frame : frames) {
+    if (!Holds(frame)) continue;
+    for (std::size_t f = 0; f < std::min(n, frame.fingers.size()); ++f) {
+      if (!frame.fingers[f].in_contact) continue;
+      const Vector3d p_OC =
+          frame.q_WO_sensed.conjugate() * (frame.fingers[f].p_WC - frame.p_WO_sensed);
+      if (!p_OC.allFinite()) continue;
+      if (cloud.count[f]++ == 0) cloud.first[f] = p_OC;
+      cloud.last[f] = p_OC;
+      cloud.points.push_back({static_cast<int>(f), p_OC});
+    }
+  }
+  cloud.stride = 1 + cloud.points.size() / kMostPointsDrawn;
+  return cloud;
+}
+
+/// Orthographic view: right, up and towards the viewer in O; p [m] is drawn in mm.
+struct View {
+  Matrix3d R_VO;  ///< rows: right, up, to the viewer
+  Point2 centre;  ///< of the sheet
+  double per_mm;  ///< logical units
+  Point2 At(const Vector3d& p_O) const {
+    const Vector3d v = R_VO * p_O * kMm;
+    return centre + Point2(v.x(), -v.y()) * per_mm;
+  }
+  Vector3d ToViewer() const { return R_VO.row(2); }
+};
+
+View MakeView(const Vector3d& to_viewer, const Vector3d& up, Point2 centre, double per_mm) {
+  View view;
+  const Vector3d z = to_viewer.normalized(), x = up.cross(z).normalized();
+  view.R_VO << x.transpose(), z.cross(x).transpose(), z.transpose();
+  view.centre = centre;
+  view.per_mm = per_mm;
+  return view;
+}
+
+void DrawObject(Canvas* canvas, const View& view, const SurfaceMesh& mesh,
+                std::span<const SurfaceLine> lines, bool front) {
+  for (const SurfaceLine& line : lines)
+    if (line.FacesViewer(view.ToViewer()) == front)
+      canvas->Line(view.At(line.a_O), view.At(line.b_O),
+                   {front ? Colour{172, 172, 172} : Colour{222, 222, 222}, front ? 1.2 : 1.0});
+  if (!front) return;
+  for (const SurfaceLine& line : Silhouette(mesh, view.ToViewer()))
+    canvas->Line(view.At(line.a_O), view.At(line.b_O), {Colour{120, 120, 120}, 2});
+}
+
+void DrawCloud(Canvas* canvas, const View& view, const Cloud& cloud, const SurfaceMesh& mesh,
+               std::span<const SurfaceLine> lines, const std::optional<SphereFit>& fit,
+               double size) {
+  // Far half first: far lines, far points, near lines, near points. The object's centre separates
+  // them.
+  const Vector3d toward = view.ToViewer();
+  for (const bool front : {false, true}) {
+    DrawObject(canvas, view, mesh, lines, front);
+    for (std::size_t i = 0; i < cloud.points.size(); i += cloud.stride) {
+      const Contact& c = cloud.points[i];
+      if ((c.p_OC.dot(toward) > 0) != front) continue;
+      const FingerLook look = LookOfFinger(c.finger);
+      canvas->Disc(view.At(c.p_OC), size, front ? look.colour : Tint(look.colour, 0.62));
+    }
+  }
+  if (fit)
+    canvas->Circle(view.At(fit->centre), fit->radius * kMm * view.per_mm, {kInk, 1.8, {9, 6}});
+  for (std::size_t f = 0; f < cloud.count.size(); ++f) {
+    if (cloud.count[f] == 0) continue;
+    const FingerLook look = LookOfFinger(static_cast<int>(f));
+    const auto tone = [&](const Vector3d& p) {
+      return p.dot(toward) > 0 ? Shade(look.colour, 0.35) : Tint(look.colour, 0.35);
+    };
+    canvas->Mark(look.marker, view.At(cloud.first[f]), 2.6 * size, tone(cloud.first[f]), kWhite);
+    canvas->Mark(look.marker, view.At(cloud.last[f]), 2.6 * size, tone(cloud.last[f]),
+                 cloud.last[f].dot(toward) > 0 ? look.colour : Tint(look.colour, 0.62));
+  }
+}
+
+/// The three far walls of the cube |x|, |y|, |z| <= half, with grid, ticks and names of the axes.
+void DrawCube(Canvas* canvas, const View& view, const Axis& axis) {
+  const Vector3d toward = view.ToViewer();
+  const double half = axis.hi / kMm;
+  Vector3d far;  // corner of the cube farthest from the viewer
+  for (int k = 0; k < 3; ++k) far[k] = toward[k] > 0 ? -half : half;
+  const auto ticks = axis.Ticks();
+  for (int wall = 0; wall < 3; ++wall) {
+    const int u = (wall + 1) % 3, v = (wall + 2) % 3;
+    const auto corner = [&](double cu, double cv) {
+      Vector3d p = far;
+      p[u] = cu;
+      p[v] = cv;
+      return view.At(p);
+    };
+    const std::vector<Point2> wall_corners = {corner(-half, -half), corner(half, -half),
+                                              corner(half, half), corner(-half, half)};
+    canvas->Polygon(wall_corners, wall == 2 ? Colour{246, 246, 246} : Colour{250, 250, 250});
+    for (double tick : ticks) {
+      canvas->Line(corner(tick / kMm, -half), corner(tick / kMm, half), {kGridGrey, 1});
+      canvas->Line(corner(-half, tick / kMm), corner(half, tick / kMm), {kGridGrey, 1});
+    }
+  }
+  // x and y are written along the near edges of the floor, z along the leftmost upright edge.
+  static constexpr const char* kNames[] = {"x [mm]", "y [mm]", "z [mm]"};
+  for (int k = 0; k < 3; ++k) {
+    Vector3d edge = -far;
+    edge[2] = -half;
+    if (k == 2) {
+      edge = far;
+      // Of the two edges between a far and a near wall take the one further left.
+      Vector3d other = far;
+      edge[0] = -far[0];
+      other[1] = -far[1];
+      if (view.At(other).x < view.At(edge).x) edge = other;
+    }
+    Vector3d from = edge, to = edge;
+    from[k] = -half;
+    to[k] = half;
+    const Point2 a = view.At(from), b = view.At(to), middle = (a + b) * 0.5;
+    canvas->Line(a, b, {kInk, 1.5});
+    // Ticks point away from the cube's centre on the sheet, perpendicular to the edge.
+    Point2 out(-(b - a).y, (b - a).x);
+    out *= 1.0 / std::max(1e-9, cv::norm(out));
+    if (out.dot(middle - view.centre) < 0) out = -out;
+    for (double tick : ticks) {
+      Vector3d p = edge;
+      p[k] = tick / kMm;
+      const Point2 at = view.At(p);
+      canvas->Line(at, at + out * 7, {kInk, 1.5});
+      canvas->Text(at + out * 24, axis.TickText(tick), {.size = 18, .align_x = AlignX::kCentre});
+    }
+    canvas->Text(middle + out * (k == 2 ? 66 : 64), kNames[k],
+                 {.size = 20, .align_x = AlignX::kCentre, .upwards = k == 2});
+  }
+}
+
+}  // namespace
+
+void PlotContacts(std::span<const Frame> history, const HandModel& hand, const ObjectModel& object,
+                  const PlotOptions& options, const std::string& path) {
+  const auto frames = Newest(history, options.last_s, path);
+  const Cloud cloud = Collect(frames, hand);
+  if (cloud.points.empty())
+    throw std::runtime_error(path + ": nothing to draw: no finger held the object in these frames");
+  std::vector<Vector3d> points;
+  for (const Contact& contact : cloud.points) points.push_back(contact.p_OC);
+  const auto fit = FitSphere(points);
+
+  Canvas canvas(options.width, options.height, path);
+  const SurfaceMesh mesh = MeshOf(object);
+  const auto lines = ShapeLines(mesh);
+  DrawTitle(
+      &canvas,
+      options.title.empty() ? "Contact points in the object's frame, as sensed" : options.title,
+      Facts(frames, hand, object.name));
+
+  double reach = object.bounding_radius;
+  std::vector<double> sizes;
+  for (const Vector3d& p : points) sizes.push_back(p.cwiseAbs().maxCoeff());
+  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 0.999),
+                   sizes.end());
+  reach = std::max(reach, sizes[static_cast<std::size_t>(sizes.size() * 0.999)]);
+  const double half = std::min(1.16 * reach, 3 * object.bounding_radius) * kMm;
+  Axis axis = NiceAxis(-half, half, 6, false, "");
+
+  const double side_width = 250, height = canvas.height();
+  const double small = (height - 110 - 2 * 92) / 2;  // edge of a square panel
+  const double right = canvas.width() - side_width;
+  const Box big(20, 100, right - small - 130 - 20, height - 110);
+  canvas.Clip({0, 0, right - small - 100, height});
+  // A cube of edge 1 seen from (1, -1.35, 0.75) is about 1.66 wide and 1.64 high.
+  const View view = MakeView({-0.85, -1.2, 0.72}, Vector3d::UnitZ(),
+                             {big.x + 0.53 * big.width, big.y + 0.46 * big.height},
+                             std::min(big.width - 150, big.height - 130) / (1.66 * 2 * half));
+  DrawCube(&canvas, view, axis);
+  DrawCloud(&canvas, view, cloud, mesh, lines, fit, 3.0);
+  canvas.Unclip();
+
+  struct Flat {
+    Vector3d to_viewer, up;
+    const char *x, *y, *title;
+  };
+  const std::array<Flat, 2> flats = {
+      Flat{Vector3d::UnitZ(), Vector3d::UnitY(), "x [mm]", "y [mm]", "seen from +z"},
+      Flat{-Vector3d::UnitY(), Vector3d::UnitZ(), "x [mm]", "z [mm]", "seen from −y"}};
+  for (int i = 0; i < 2; ++i) {
+    Panel panel{{right - small - 10, 106 + i * (small + 92), small, small}, axis, axis};
+    panel.x.label.clear();
+    panel.y.label.clear();
+    DrawGrid(&canvas, panel, true);
+    canvas.Text({panel.area.x + small / 2, panel.area.br().y + 36}, flats[i].x,
+                {.size = 20, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
+    canvas.Text({panel.area.x - 64, panel.area.y + small / 2}, flats[i].y,
+                {.size = 20, .align_x = AlignX::kCentre, .upwards = true});
+    canvas.Clip(panel.area);
+    DrawCloud(&canvas,
+              MakeView(flats[i].to_viewer, flats[i].up, panel.At(0, 0), small / (2 * half)), cloud,
+              mesh, lines, fit, 2.2);
+    canvas.Unclip();
+    canvas.Text({panel.area.x + 10, panel.area.y + 18}, flats[i].title,
+                {.size = 17, .colour = kGrey, .halo = 2});
+    DrawFrame(&canvas, panel);
+  }
+
+  const double side = right + 20;
+  std::vector<LegendEntry> entries;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const FingerLook look = LookOfFinger(f);
+    entries.push_back(MarkEntry(fmt::format("{}  {}", FingerName(hand, f), cloud.count[f]),
+                                look.marker, look.colour));
+  }
+  double y = DrawLegend(&canvas, {side, 110}, "finger, points", entries) + 10;
+  const std::array<LegendEntry, 4> marks = {
+      LegendEntry{"first contact",
+                  [](Canvas* c, Point2 m) { c->Mark(Marker::kDisc, m, 6.5, kInk, kWhite); }},
+      LegendEntry{"newest contact",
+                  [](Canvas* c, Point2 m) { c->Mark(Marker::kDisc, m, 6.5, kInk, kGrey); }},
+      LegendEntry{"on the near side", [](Canvas* c, Point2 m) { c->Disc(m, 3.5, kBlue); }},
+      LegendEntry{"on the far side",
+                  [](Canvas* c, Point2 m) { c->Disc(m, 3.5, Tint(kBlue, 0.62)); }}};
+  y = DrawLegend(&canvas, {side, y}, "", marks) + 10;
+  std::vector<LegendEntry> shapes = {LineEntry("true outline", {Colour{120, 120, 120}, 2})};
+  if (fit) shapes.push_back(LineEntry("sphere fit", {kInk, 1.8, {9, 6}}));
+  y = DrawLegend(&canvas, {side, y}, "", shapes) + 18;
+  std::vector<std::string> facts;
+  if (fit) {
+    facts = {fmt::format("radius  {:.2f} mm", fit->radius * kMm),
+             fmt::format("rms error  {:.2f} mm", fit->rms_error * kMm),
+             fmt::format("centre off by  {:.2f} mm", fit->centre.norm() * kMm)};
+    if (object.kind == ObjectModel::Kind::kSphere)
+      facts.push_back(fmt::format("true radius  {:.2f} mm", object.radius * kMm));
+  } else {
+    facts = {"the points do not", "determine a sphere"};
+  }
+  canvas.Text({side, y + 10}, "least-squares sphere", {.size = 18, .bold = true});
+  y += 40;
+  for (const std::string& fact : facts) {
+    canvas.Text({side, y}, fact, {.size = 18});
+    y += 26;
+  }
+  y += 14;
+  canvas.Text({side, y}, fmt::format("{} points", points.size()), {.size = 18, .bold = true});
+  if (cloud.stride > 1)
+    canvas.Text({side, y + 26}, fmt::format("one in {} drawn", cloud.stride),
+                {.size = 17, .colour = kGrey});
+  canvas.Save();
+}
+
+}  // namespace regrasp

@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include "snapshots/axes.h"
+#include "snapshots/measures.h"
+#include "snapshots/snapshots.h"
+#include "snapshots/timeline.h"
+
+namespace regrasp {
+namespace {
+
+// Values of the criterion strip.
+constexpr int kOnStability = 100;
+
+/// Finger and objective that are active, as one number; -1 while nothing explores.
+int ObjectiveOf(const Frame& frame) {
+  const ExplorationFrame& e = frame.exploration;
+  if (!e.active) return -1;
+  return static_cast<int>(e.criterion) * 1000 + (e.on_stability ? kOnStability : 0) + e.finger;
+}
+
+std::string CriterionText(Criterion criterion, bool on_stability) {
+  std::string text(Name(criterion));
+  if (criterion == Criterion::kSwitched) text += on_stability ? ": stability" : ": manipulability";
+  return text;
+}
+
+BandLook LookOfObjective(const HandModel& hand, int value) {
+  const int finger = value % kOnStability;
+  const bool on_stability = value % 1000 >= kOnStability;
+  const auto criterion = static_cast<Criterion>(value / 1000);
+  const bool stability = on_stability || criterion == Criterion::kStability;
+  const Colour colour = LookOfFinger(finger).colour;
+  return {FingerName(hand, finger) + ", " + CriterionText(criterion, on_stability),
+          stability ? Tint(colour, 0.25) : Tint(colour, 0.6)};
+}
+
+/// "ring 1.21 → 1.87": noise-free manipulability over each finger's last exploration.
+std::vector<std::string> Gains(std::span<const Frame> frames, const HandModel& hand) {
+  std::vector<std::string> lines;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    double first = kNoValue, last = kNoValue;
+    bool exploring = false;
+    for (const Frame& frame : frames) {
+      const bool now = ExploringFinger(frame) == f;
+      const double phi = TrueManipulability(frame, f);
+      if (now && !exploring) first = phi;
+      if (now && phi == phi) last = phi;
+      if (first != first) first = last;
+      exploring = now;
+    }
+    if (last == last)
+      lines.push_back(fmt::format("{}  {:.2f} → {:.2f}", FingerName(hand, f), first, last));
+  }
+  return lines;
+}
+
+}  // namespace
+
+void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
+                 const HandModel& hand, const PlotOptions& options, const std::string& path) {
+  const auto frames = Newest(history, options.last_s, path);
+  Canvas canvas(options.width, options.height, path);
+  const std::vector<double> t = Times(frames);
+  DrawTitle(&canvas, options.title.empty() ? "Manipulability and grasp stability" : options.title,
+            Facts(frames, hand, options.object_name));
+
+  const double left = 150, width = canvas.width() - left - 290, bottom = canvas.height() - 90;
+  const double strips = 104, first = strips + 92, room = bottom - first - 2 * 26;
+  const Axis time = NiceAxis(t.front(), t.back(), 9, false, "simulated time [s]");
+
+  Range phi_range;
+  phi_range.Add(0);
+  std::vector<std::vector<double>> phi_true, phi_sensed;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    phi_true.push_back(
+        Column(frames, [f](const Frame& frame) { return TrueManipulability(frame, f); }));
+    phi_sensed.push_back(Column(frames, [f](const Frame& frame) {
+      return ExploringFinger(frame) == f ? SensedManipulability(frame, f) : kNoValue;
+    }));
+    phi_range.Add(phi_true.back());
+    phi_range.Add(phi_sensed.back());
+  }
+  const auto stability = Column(
+      frames, [](const Frame& frame) { return Holds(frame) ? frame.stability.active : kNoValue; });
+  const auto threshold =
+      Column(frames, [](const Frame& frame) { return frame.stability.threshold; });
+  const auto margin = Column(frames, [](const Frame& frame) {
+    return Holds(frame) ? frame.stability.load_margin : kNoValue;
+  });
+  Range stability_range, margin_range;
+  stability_range.Add(0);
+  stability_range.Add(stability);
+  stability_range.Add(threshold);
+  margin_range.Add(0);
+  margin_range.Add(margin);
+  const auto axis = [](const Range& range, int ticks, const std::string& label) {
+    const Range padded = range.Padded(0, 0.06);
+    return NiceAxis(padded.lo, padded.hi, ticks, true, label);
+  };
+  const Panel upper{
+      {left, first, width, 0.47 * room}, time, axis(phi_range, 6, "manipulability  φ  [10⁻⁴ m³]")};
+  const Panel middle{{left, upper.area.br().y + 26, width, 0.32 * room},
+                     time,
+                     axis(stability_range, 5, StabilityLabel(frames))};
+  const Panel lower{{left, middle.area.br().y + 26, width, 0.21 * room},
+                    time,
+                    axis(margin_range, 3, "margin  ρ  [N]")};
+  const std::array<Panel, 3> panels = {upper, middle, lower};
+
+  const auto states =
+      Bands(frames, [](const Frame& frame) { return static_cast<int>(frame.state); });
+  DrawStrip(&canvas, upper, strips, 26, "state", states, [](int value) {
+    const auto state = static_cast<SessionState>(value);
+    return BandLook{std::string(Name(state)), StateColour(state)};
+  });
+  DrawStrip(&canvas, upper, strips + 32, 26, "objective", Bands(frames, ObjectiveOf),
+            [&](int value) { return LookOfObjective(hand, value); });
+  for (const Panel& panel : panels) {
+    DrawStateBackground(&canvas, panel, states);
+    DrawGrid(&canvas, panel, &panel == &panels.back());
+  }
+  const auto marks = DrawEvents(&canvas, panels, strips + 75, frames, events);
+  canvas.Text({left - 12, strips + 75}, "events",
+              {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
+
+  std::vector<LegendEntry> fingers;
+  bool any_explores = false;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const FingerLook look = LookOfFinger(f);
+    DrawCurve(&canvas, upper, t, phi_sensed[f], {Tint(look.colour, 0.62), 1.5});
+  }
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const FingerLook look = LookOfFinger(f);
+    DrawCurve(&canvas, upper, t, phi_true[f], {Tint(look.colour, 0.15), 1.5, look.dash});
+    std::vector<double> bold = phi_true[f];
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      if (ExploringFinger(frames[i]) != f) bold[i] = kNoValue;
+    DrawCurve(&canvas, upper, t, bold, {look.colour, 4});
+    any_explores =
+        any_explores || std::any_of(bold.begin(), bold.end(), [](double v) { return v == v; });
+    fingers.push_back(LineEntry(FingerName(hand, f), {look.colour, 2, look.dash}));
+  }
+  DrawCurve(&canvas, middle, t, stability, {kInk, 2.5});
+  DrawCurve(&canvas, middle, t, threshold, {kVermillion, 2, {12, 7}});
+  DrawCurve(&canvas, lower, t, margin, {Shade(kGreen, 0.2), 2.5});
+  for (const Panel& panel : panels) DrawFrame(&canvas, panel);
+
+  const double side = left + width + 28;
+  double y = DrawLegend(&canvas, {side, upper.area.y}, "finger, noise-free", fingers) + 8;
+  if (any_explores) {
+    const std::array<LegendEntry, 2> kinds = {LineEntry("while it explores", {kInk, 4}),
+                                              LineEntry("as sensed", {Tint(kInk, 0.62), 1.5})};
+    y = DrawLegend(&canvas, {side, y}, "", kinds) + 8;
+    y = DrawLegend(&canvas, {side, y}, "φ over exploration", {});
+    for (const std::string& line : Gains(frames, hand)) {
+      if (y > middle.area.y - 20) break;
+      canvas.Text({side, y + 8}, line, {.size = 17});
+      y += 25;
+    }
+  }
+  const std::array<LegendEntry, 2> holding = {LineEntry("holding fingers", {kInk, 2.5}),
+                                              LineEntry("threshold", {kVermillion, 2, {12, 7}})};
+  y = DrawLegend(&canvas, {side, middle.area.y}, "stability, as sensed", holding) + 12;
+  if (!marks.empty()) y = DrawLegend(&canvas, {side, y}, "events", marks);
+  const std::array<LegendEntry, 1> load = {LineEntry("all in contact", {Shade(kGreen, 0.2), 2.5})};
+  DrawLegend(&canvas, {side, std::max(y + 12, lower.area.y)}, "load margin", load);
+  canvas.Save();
+}
+
+}  // namespace regrasp

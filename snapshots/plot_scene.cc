@@ -1,0 +1,292 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/hand/kinematics.h"
+#include "snapshots/axes.h"
+#include "snapshots/renderer.h"
+#include "snapshots/snapshots.h"
+#include "snapshots/timeline.h"
+
+namespace regrasp {
+namespace {
+
+constexpr Colour kPalm{205, 205, 208}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
+constexpr double kScaleBar = 0.02;  // [m]
+
+std::vector<Body> Bodies(const Frame& frame, const HandModel& hand, const ObjectModel& object) {
+  KinematicsData kinematics;
+  ForwardKinematics(hand, frame.q, &kinematics);
+  // A finger's last link has its full colour, the others paler ones towards the palm.
+  std::vector<Colour> colours(hand.links.size(), kPalm);
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const auto& joints = hand.fingers[f].joints;
+    const Colour colour = LookOfFinger(f).colour;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const double to_tip = static_cast<double>(joints.size() - 1 - i);
+      colours[hand.joints[joints[i]].child_link] =
+          Tint(colour, std::min(0.84, 0.56 + 0.12 * to_tip));
+    }
+    if (hand.fingers[f].tip_link >= 0) colours[hand.fingers[f].tip_link] = Tint(colour, 0.08);
+  }
+  std::vector<Body> bodies;
+  for (std::size_t l = 0; l < hand.links.size(); ++l)
+    for (const Shape& shape : hand.links[l].shapes) {
+      Body body;
+      body.X_WB = kinematics.X_WL[l];
+      if (shape.kind == Shape::Kind::kBox) {
+        body.kind = Body::Kind::kBox;
+        body.X_WB = kinematics.X_WL[l] * shape.X_LB;
+        body.half_extents = shape.half_extents;
+      } else {
+        body.a_B = shape.a_L;
+        body.b_B = shape.b_L;
+        body.radius = shape.radius;
+      }
+      body.colour = body.second_colour = colours[l];
+      body.id = static_cast<int>(l);
+      bodies.push_back(std::move(body));
+    }
+  Body body;
+  body.X_WB.linear() = frame.q_WO.toRotationMatrix();
+  body.X_WB.translation() = frame.p_WO;
+  switch (object.kind) {
+    case ObjectModel::Kind::kSphere:
+    case ObjectModel::Kind::kCapsule:
+      body.radius = object.radius;
+      body.b_B =
+          Vector3d(0, 0, object.kind == ObjectModel::Kind::kCapsule ? object.half_length : 0);
+      body.a_B = -body.b_B;
+      break;
+    case ObjectModel::Kind::kBox:
+      body.kind = Body::Kind::kBox;
+      body.half_extents = object.half_extents;
+      break;
+    case ObjectModel::Kind::kMesh:
+      body.kind = Body::Kind::kMesh;
+      body.mesh = MeshOf(object);
+      break;
+  }
+  body.colour = kObjectLight;
+  body.second_colour = kObjectDark;
+  body.id = static_cast<int>(hand.links.size());
+  bodies.push_back(std::move(body));
+  return bodies;
+}
+
+/// 1, 2 or 5 times a power of ten, at most `value`.
+double NiceBelow(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  const double ratio = value / power;
+  return power * (ratio >= 5 ? 5 : ratio >= 2 ? 2 : 1);
+}
+
+/// One of the two pictures: the rendered bodies with everything that is written on them.
+class ViewPainter {
+ public:
+  ViewPainter(Canvas* canvas, const Box& box, std::span<const Body> bodies,
+              const Vector3d& to_viewer, const Vector3d& up)
+      : canvas_(canvas), box_(box) {
+    const cv::Size size = canvas->PixelsOf(box);
+    camera_ = FitCamera(bodies, to_viewer, up, size, 46 * canvas->scale());
+    canvas->Paste(Render(bodies, camera_, size), box);
+  }
+
+  Point2 At(const Vector3d& p_W) const {
+    return box_.tl() + camera_.Project(p_W) * (1 / canvas_->scale());
+  }
+  double PerMetreAt(const Vector3d& p_W) const { return camera_.ScaleAt(p_W) / canvas_->scale(); }
+
+  /// The force as an arrow that pushes with its head on the contact point.
+  void Force(const Vector3d& p_W, const Vector3d& f_W, double metres_per_newton, Colour dot) {
+    const Point2 head = At(p_W), tail = At(p_W - f_W * metres_per_newton);
+    canvas_->Disc(head, 7, kWhite);
+    canvas_->Disc(head, 5.2, dot);
+    canvas_->Arrow(tail, head, {kInk, 3.6}, 1.6);
+    taken_.push_back(Box(Point2(std::min(head.x, tail.x), std::min(head.y, tail.y)),
+                         Point2(std::max(head.x, tail.x) + 1, std::max(head.y, tail.y) + 1)));
+  }
+
+  /// A name near `p_W`, away from `from` on the sheet and from what has been written before.
+  void Label(const Vector3d& p_W, Point2 from, const std::string& text, Colour colour) {
+    const double width = canvas_->TextWidth(text, 20, true), height = 24;
+    const Point2 at = At(p_W);
+    Point2 away = at - from;
+    away *= 1 / std::max(1.0, cv::norm(away));
+    Point2 best = at;
+    double best_cost = 1e30;
+    for (double distance : {42.0, 58.0, 76.0, 100.0})
+      for (int i = 0; i < 16; ++i) {
+        const double a = i * std::numbers::pi / 8;
+        const Point2 direction(std::cos(a), std::sin(a));
+        const Point2 centre =
+            at + Point2(direction.x * (distance + width / 2 - 10), direction.y * distance);
+        const Box room(centre.x - width / 2 - 4, centre.y - height / 2 - 2, width + 8, height + 4);
+        double cost = 0.6 * distance - 34 * direction.dot(away);
+        for (const Box& other : taken_) cost += 3 * std::sqrt((room & other).area());
+        if ((room & box_).area() < room.area() - 1) cost += 1e4;
+        if (cost < best_cost) best_cost = cost, best = centre;
+      }
+    taken_.push_back({best.x - width / 2 - 4, best.y - height / 2 - 2, width + 8, height + 4});
+    canvas_->Line(at, at + (best - at) * std::max(0.0, 1 - 17 / cv::norm(best - at)), {kInk, 1.2});
+    canvas_->Text(
+        best, text,
+        {.size = 20, .colour = colour, .align_x = AlignX::kCentre, .bold = true, .halo = 2.5});
+  }
+
+  /// Directions x, y, z of the palm's frame, and gravity, in the corners at the top.
+  void Directions(const Vector3d& gravity_W) {
+    const Matrix3d& R_CW = camera_.X_CW.linear();
+    const auto draw = [&](Point2 origin, const Vector3d& direction_W, double length, const Pen& pen,
+                          const std::string& name, Colour colour) {
+      const Vector3d d = R_CW * direction_W;
+      const Point2 on_sheet(d.x(), d.y());
+      if (cv::norm(on_sheet) < 0.18) {  // along the line of sight: a ring with a dot or a cross
+        canvas_->Disc(origin, 9, kWhite);
+        canvas_->Circle(origin, 9, {pen.colour, 2});
+        if (d.z() < 0)
+          canvas_->Disc(origin, 3, pen.colour);
+        else
+          canvas_->Mark(Marker::kCross, origin, 6, pen.colour);
+        canvas_->Text(origin + Point2(16, 14), name, {.size = 18, .colour = colour});
+        return;
+      }
+      const Point2 head = origin + on_sheet * length;
+      canvas_->Arrow(origin, head, pen);
+      canvas_->Text(head + on_sheet * (16 / cv::norm(on_sheet)), name,
+                    {.size = 18, .colour = colour, .align_x = AlignX::kCentre});
+    };
+    const Point2 triad = box_.tl() + Point2(70, 78);
+    draw(triad, Vector3d::UnitX(), 46, {kGrey, 2.4}, "x", kGrey);
+    draw(triad, Vector3d::UnitY(), 46, {kGrey, 2.4}, "y", kGrey);
+    draw(triad, Vector3d::UnitZ(), 46, {kGrey, 2.4}, "z", kGrey);
+    if (gravity_W.norm() > 1e-6)
+      draw({box_.br().x - 70, box_.y + 66}, gravity_W.normalized(), 62, {kVermillion, 4}, "g",
+           kVermillion);
+  }
+
+  /// Lengths at the depth of the object, in the lower left corner.
+  void Scales(const Vector3d& p_WO, double newton, double metres_per_newton) {
+    const double per_metre = PerMetreAt(p_WO);
+    const Point2 at(box_.x + 24, box_.br().y - 58);
+    const Point2 end = at + Point2(kScaleBar * per_metre, 0);
+    canvas_->Line(at, end, {kInk, 2.5});
+    for (const Point2& p : {at, end})
+      canvas_->Line(p - Point2(0, 6), p + Point2(0, 6), {kInk, 2.5});
+    canvas_->Text(end + Point2(12, 0), fmt::format("{:.0f} mm", kScaleBar * 1e3),
+                  {.size = 18, .halo = 2});
+    if (newton <= 0) return;
+    const Point2 tail = at + Point2(0, 32),
+                 head = tail + Point2(newton * metres_per_newton * per_metre, 0);
+    canvas_->Arrow(tail, head, {kInk, 3.6});
+    canvas_->Text({std::max(head.x, end.x) + 12, head.y}, fmt::format("{:g} N", newton),
+                  {.size = 18, .halo = 2});
+  }
+
+ private:
+  Canvas* canvas_;
+  Box box_;
+  Camera camera_;
+  std::vector<Box> taken_;
+};
+
+}  // namespace
+
+void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
+               const PlotOptions& options, const std::string& path) {
+  if (frame.q.size() != hand.num_joints())
+    throw std::runtime_error(
+        fmt::format("{}: nothing to draw: the frame has {} joint angles, hand {} has {} joints",
+                    path, frame.q.size(), hand.name, hand.num_joints()));
+  Canvas canvas(options.width, options.height, path);
+  DrawTitle(&canvas, options.title.empty() ? "Hand, object and contact forces" : options.title,
+            Facts({&frame, 1}, hand, object.name));
+
+  const std::vector<Body> bodies = Bodies(frame, hand, object);
+  double largest = 0;
+  Vector3d sum = Vector3d::Zero();
+  for (const Frame::Contact& contact : frame.contacts) {
+    largest = std::max(largest, contact.force_W.norm());
+    sum += contact.force_W;
+  }
+  // The largest force is drawn 35 mm long.
+  const double metres_per_newton = largest > 1e-6 ? 0.035 / largest : 0;
+  const double newton = largest > 1e-6 ? NiceBelow(largest) : 0;
+
+  // Up on the sheet is up in the world where the direction of view allows it, else towards the
+  // fingers.
+  const auto up_for = [&](const Vector3d& to_viewer) {
+    const Vector3d up = frame.gravity_W.norm() > 1e-6 ? Vector3d(-frame.gravity_W.normalized())
+                                                      : Vector3d(Vector3d::UnitZ());
+    return TangentPart(up, to_viewer.normalized()).norm() > 0.45 ? up : Vector3d(Vector3d::UnitZ());
+  };
+  const double side_width = 250, top = 104, gap = 20;
+  const double width = (canvas.width() - side_width - 3 * gap) / 2,
+               height = canvas.height() - top - 24;
+  struct Side {
+    Vector3d to_viewer;
+    const char* name;
+  };
+  const std::array<Side, 2> sides = {Side{{0.22, -1, 0.16}, "from the palm's side"},
+                                     Side{{1, -0.32, 0.12}, "from the thumb's side"}};
+  for (int i = 0; i < 2; ++i) {
+    const Box box(gap + i * (width + gap), top, width, height);
+    ViewPainter view(&canvas, box, bodies, sides[i].to_viewer, up_for(sides[i].to_viewer));
+    canvas.Clip(box);
+    for (const Frame::Contact& contact : frame.contacts)
+      view.Force(contact.p_WC, contact.force_W, metres_per_newton,
+                 contact.finger >= 0 ? LookOfFinger(contact.finger).colour : kVermillion);
+    for (int f = 0; f < std::min<int>(hand.num_fingers(), static_cast<int>(frame.fingers.size()));
+         ++f)
+      view.Label(frame.fingers[f].true_tip_W, view.At(frame.p_WO), hand.fingers[f].name,
+                 Shade(LookOfFinger(f).colour, 0.25));
+    view.Directions(frame.gravity_W);
+    view.Scales(frame.p_WO, newton, metres_per_newton);
+    canvas.Unclip();
+    const std::vector<Point2> corners = {
+        box.tl(), {box.br().x, box.y}, box.br(), {box.x, box.br().y}, box.tl()};
+    canvas.Polyline(corners, {kLightGrey, 1});
+    canvas.Text({box.x + width / 2, box.y + 20}, sides[i].name,
+                {.size = 18, .colour = kGrey, .align_x = AlignX::kCentre, .halo = 2});
+  }
+
+  const double side = canvas.width() - side_width + 4;
+  std::vector<LegendEntry> entries;
+  std::vector<double> force(hand.fingers.size(), 0);
+  double other = 0;
+  for (const Frame::Contact& contact : frame.contacts) {
+    if (contact.finger >= 0 && contact.finger < hand.num_fingers())
+      force[contact.finger] += contact.force_W.norm();
+    else
+      other += contact.force_W.norm();
+  }
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    entries.push_back(MarkEntry(fmt::format("{}  {:.2f} N", hand.fingers[f].name, force[f]),
+                                Marker::kDisc, LookOfFinger(f).colour));
+  if (other > 0)
+    entries.push_back(
+        MarkEntry(fmt::format("other links  {:.2f} N", other), Marker::kDisc, kVermillion));
+  double y = DrawLegend(&canvas, {side, top + 4}, "contact force, true", entries) + 16;
+  const std::array<LegendEntry, 1> arrow = {
+      LegendEntry{"force on the object", [](Canvas* c, Point2 m) {
+                    c->Arrow(m - Point2(20, 0), m + Point2(20, 0), {kInk, 3.6});
+                  }}};
+  y = DrawLegend(&canvas, {side, y}, "", arrow) + 16;
+  const double weight = frame.mass_kg * frame.gravity_W.norm();
+  canvas.Text({side, y + 10}, "balance", {.size = 18, .bold = true});
+  std::vector<std::string> lines = {fmt::format("weight  {:.3f} N", weight)};
+  if (weight > 0)
+    lines.push_back(fmt::format("carried  {:.3f} N", -sum.dot(frame.gravity_W.normalized())));
+  lines.push_back(fmt::format("state  {}", Name(frame.state)));
+  if (frame.stand_in) lines.push_back("stand-in holds the object");
+  y += 40;
+  for (const std::string& line : lines) {
+    canvas.Text({side, y}, line, {.size = 18});
+    y += 26;
+  }
+  canvas.Save();
+}
+
+}  // namespace regrasp

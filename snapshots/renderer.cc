@@ -1,0 +1,294 @@
+#include "snapshots/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+
+namespace regrasp {
+namespace {
+
+constexpr double kViewDistance = 0.7;    // of the camera from the middle of the bodies [m]
+constexpr double kBehind = 0.03;         // the white ground counts as this far behind the scene [m]
+constexpr double kContourDepth = 0.004;  // a step in depth that earns a contour [m]
+
+/// Depth, body and surface normal (camera frame) per pixel.
+struct Buffers {
+  explicit Buffers(cv::Size size)
+      : depth(size, std::numeric_limits<float>::infinity()), body(size, -1), normal(size) {}
+  cv::Mat_<float> depth;
+  cv::Mat_<int> body;
+  cv::Mat_<cv::Vec3f> normal;
+
+  void Put(int x, int y, double z, int index, const Vector3d& n) {
+    if (!(z < depth(y, x))) return;
+    depth(y, x) = static_cast<float>(z);
+    body(y, x) = index;
+    normal(y, x) =
+        cv::Vec3f(static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z()));
+  }
+};
+
+cv::Rect PixelBounds(const Camera& camera, const Vector3d& centre_C, double radius, cv::Size size) {
+  const double near = std::max(1e-3, centre_C.z() - radius);
+  const double reach = camera.focal_px * radius / near + 2;
+  const double x = camera.centre_x_px + camera.focal_px * centre_C.x() / centre_C.z();
+  const double y = camera.centre_y_px + camera.focal_px * centre_C.y() / centre_C.z();
+  const double extra = camera.focal_px * radius * centre_C.head<2>().norm() / (near * centre_C.z());
+  const double r = reach + extra;
+  return cv::Rect(
+             cv::Point(static_cast<int>(std::floor(x - r)), static_cast<int>(std::floor(y - r))),
+             cv::Point(static_cast<int>(std::ceil(x + r)), static_cast<int>(std::ceil(y + r)))) &
+         cv::Rect({0, 0}, size);
+}
+
+/// Nearest t > 0 at which the ray t d from the origin meets the sphere; negative when it does not.
+double HitSphere(const Vector3d& d, const Vector3d& c, double r) {
+  const double dd = d.squaredNorm(), dc = d.dot(c), h = dc * dc - dd * (c.squaredNorm() - r * r);
+  return h < 0 ? -1 : (dc - std::sqrt(h)) / dd;
+}
+
+void DrawCapsule(const Body& body, int index, const Camera& camera, Buffers* out) {
+  const Isometry3d X_CB = camera.X_CW * body.X_WB;
+  const Vector3d a = X_CB * body.a_B, b = X_CB * body.b_B, axis = b - a;
+  const double length2 = axis.squaredNorm(), r = body.radius;
+  const cv::Size size = out->depth.size();
+  const cv::Rect box = PixelBounds(camera, a, r, size) | PixelBounds(camera, b, r, size);
+  for (int y = box.y; y < box.br().y; ++y)
+    for (int x = box.x; x < box.br().x; ++x) {
+      const Vector3d d((x - camera.centre_x_px) / camera.focal_px,
+                       (y - camera.centre_y_px) / camera.focal_px, 1);
+      double t = -1, along = 0;
+      if (length2 > 1e-12) {
+        // The infinite cylinder: |(t d - a) x axis|² = r² |axis|².
+        const Vector3d u = d - axis * (d.dot(axis) / length2),
+                       v = -a + axis * (a.dot(axis) / length2);
+        const double A = u.squaredNorm(), B = u.dot(v), h = B * B - A * (v.squaredNorm() - r * r);
+        if (h < 0) continue;
+        t = (-B - std::sqrt(h)) / A;
+        along = (d * t - a).dot(axis) / length2;
+        if (along < 0 || along > 1) {
+          const double ta = HitSphere(d, a, r), tb = HitSphere(d, b, r);
+          t = ta > 0 && (tb <= 0 || ta < tb) ? ta : tb;
+          along = t == ta ? 0 : 1;
+        }
+      } else {
+        t = HitSphere(d, a, r);
+      }
+      if (t > 0) out->Put(x, y, t, index, (d * t - a - axis * along) / r);
+    }
+}
+
+void DrawBox(const Body& body, int index, const Camera& camera, Buffers* out) {
+  const Isometry3d X_CB = camera.X_CW * body.X_WB, X_BC = X_CB.inverse();
+  const auto [centre_W, radius] = body.BoundingSphere();
+  const Vector3d eye = X_BC.translation();
+  const cv::Rect box = PixelBounds(camera, camera.X_CW * centre_W, radius, out->depth.size());
+  for (int y = box.y; y < box.br().y; ++y)
+    for (int x = box.x; x < box.br().x; ++x) {
+      const Vector3d d = X_BC.linear() * Vector3d((x - camera.centre_x_px) / camera.focal_px,
+                                                  (y - camera.centre_y_px) / camera.focal_px, 1);
+      double enter = -1e30, leave = 1e30;
+      int side = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double inverse = 1 / (std::abs(d[k]) < 1e-12 ? std::copysign(1e-12, d[k]) : d[k]);
+        const double t1 = (-body.half_extents[k] - eye[k]) * inverse;
+        const double t2 = (body.half_extents[k] - eye[k]) * inverse;
+        if (std::min(t1, t2) > enter) enter = std::min(t1, t2), side = k;
+        leave = std::min(leave, std::max(t1, t2));
+      }
+      if (enter <= 0 || enter > leave) continue;
+      out->Put(x, y, enter, index, X_CB.linear().col(side) * (d[side] > 0 ? -1 : 1));
+    }
+}
+
+void DrawMesh(const Body& body, int index, const Camera& camera, Buffers* out) {
+  const Isometry3d X_CB = camera.X_CW * body.X_WB;
+  const auto& triangles = body.mesh.triangles;
+  std::vector<Vector3d> p, vertex_normal(body.mesh.vertices_O.size(), Vector3d::Zero());
+  for (const Vector3d& v : body.mesh.vertices_O) p.push_back(X_CB * v);
+  for (const auto& t : triangles) {
+    const Vector3d n = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
+    for (int k = 0; k < 3; ++k) vertex_normal[t[k]] += n;
+  }
+  for (Vector3d& n : vertex_normal) n.normalize();
+  const auto pixel = [&](const Vector3d& v) {
+    return cv::Point2d(camera.centre_x_px + camera.focal_px * v.x() / v.z(),
+                       camera.centre_y_px + camera.focal_px * v.y() / v.z());
+  };
+  for (const auto& t : triangles) {
+    const std::array<Vector3d, 3> v = {p[t[0]], p[t[1]], p[t[2]]};
+    const Vector3d face = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+    if (face.dot(v[0]) >= 0) continue;  // faces away
+    const std::array<cv::Point2d, 3> q = {pixel(v[0]), pixel(v[1]), pixel(v[2])};
+    const double area = (q[1] - q[0]).cross(q[2] - q[0]);
+    if (std::abs(area) < 1e-9) continue;
+    const auto [x0, x1] = std::minmax({q[0].x, q[1].x, q[2].x});
+    const auto [y0, y1] = std::minmax({q[0].y, q[1].y, q[2].y});
+    for (int y = std::max(0, static_cast<int>(std::ceil(y0)));
+         y <= std::min<double>(out->depth.rows - 1, y1); ++y)
+      for (int x = std::max(0, static_cast<int>(std::ceil(x0)));
+           x <= std::min<double>(out->depth.cols - 1, x1); ++x) {
+        const cv::Point2d s(x, y);
+        const double w0 = (q[1] - s).cross(q[2] - s) / area, w1 = (q[2] - s).cross(q[0] - s) / area;
+        const double w2 = 1 - w0 - w1;
+        if (w0 < -1e-9 || w1 < -1e-9 || w2 < -1e-9) continue;
+        const double z = 1 / (w0 / v[0].z() + w1 / v[1].z() + w2 / v[2].z());
+        const Vector3d smooth =
+            (w0 * vertex_normal[t[0]] + w1 * vertex_normal[t[1]] + w2 * vertex_normal[t[2]])
+                .normalized();
+        // Round off only what is nearly flat; a sharp edge stays sharp.
+        out->Put(x, y, z, index, smooth.dot(face) > 0.85 ? smooth : face);
+      }
+  }
+}
+
+/// How far each pixel lies behind its surroundings [m], >= 0: the shadow of what is nearer.
+cv::Mat_<float> Behind(const cv::Mat_<float>& depth, double far, double radius_px) {
+  cv::Mat_<float> filled = depth.clone(), small, blurred;
+  for (float& z : filled) z = std::isinf(z) ? static_cast<float>(far) : z;
+  const double shrink = 4;
+  cv::resize(filled, small, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
+  cv::GaussianBlur(small, small, {}, std::max(0.8, radius_px / shrink));
+  cv::resize(small, blurred, filled.size(), 0, 0, cv::INTER_LINEAR);
+  return cv::max(filled - blurred, 0.0f);
+}
+
+}  // namespace
+
+std::pair<Vector3d, double> Body::BoundingSphere() const {
+  switch (kind) {
+    case Kind::kCapsule:
+      return {X_WB * (0.5 * (a_B + b_B)), 0.5 * (a_B - b_B).norm() + radius};
+    case Kind::kBox:
+      return {X_WB.translation(), half_extents.norm()};
+    case Kind::kMesh:
+      break;
+  }
+  double r = 0;
+  for (const Vector3d& v : mesh.vertices_O) r = std::max(r, v.norm());
+  return {X_WB.translation(), r};
+}
+
+Camera FitCamera(std::span<const Body> bodies, const Vector3d& to_viewer_W, const Vector3d& up_W,
+                 cv::Size size, double margin) {
+  Eigen::AlignedBox3d all;
+  for (const Body& body : bodies) all.extend(body.BoundingSphere().first);
+  const Vector3d middle = bodies.empty() ? Vector3d::Zero() : Vector3d(all.center());
+  const Vector3d z = -to_viewer_W.normalized(), x = z.cross(up_W).normalized();
+  Matrix3d R_CW;
+  R_CW << x.transpose(), z.cross(x).transpose(), z.transpose();
+  Camera camera;
+  camera.X_CW.linear() = R_CW;
+  camera.X_CW.translation() = -R_CW * (middle + to_viewer_W.normalized() * kViewDistance);
+  camera.focal_px = 1;
+
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  const auto include = [&](const Vector3d& p_W, double radius) {
+    const cv::Point2d q = camera.Project(p_W);
+    const double r = radius / camera.Depth(p_W);
+    left = std::min(left, q.x - r), right = std::max(right, q.x + r);
+    top = std::min(top, q.y - r), bottom = std::max(bottom, q.y + r);
+  };
+  for (const Body& body : bodies) {
+    if (body.kind == Body::Kind::kCapsule) {
+      include(body.X_WB * body.a_B, body.radius);
+      include(body.X_WB * body.b_B, body.radius);
+    } else if (body.kind == Body::Kind::kBox) {
+      for (int i = 0; i < 8; ++i)
+        include(body.X_WB * Vector3d(body.half_extents.x() * (i & 1 ? 1 : -1),
+                                     body.half_extents.y() * (i & 2 ? 1 : -1),
+                                     body.half_extents.z() * (i & 4 ? 1 : -1)),
+                0);
+    } else {
+      const auto [centre, radius] = body.BoundingSphere();
+      include(centre, radius);
+    }
+  }
+  camera.focal_px = std::min((size.width - 2 * margin) / (right - left),
+                             (size.height - 2 * margin) / (bottom - top));
+  camera.centre_x_px = size.width / 2.0 - camera.focal_px * (left + right) / 2;
+  camera.centre_y_px = size.height / 2.0 - camera.focal_px * (top + bottom) / 2;
+  return camera;
+}
+
+cv::Mat Render(std::span<const Body> bodies, const Camera& camera, cv::Size size) {
+  Buffers buffers(size);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const int index = static_cast<int>(i);
+    switch (bodies[i].kind) {
+      case Body::Kind::kCapsule:
+        DrawCapsule(bodies[i], index, camera, &buffers);
+        break;
+      case Body::Kind::kBox:
+        DrawBox(bodies[i], index, camera, &buffers);
+        break;
+      case Body::Kind::kMesh:
+        DrawMesh(bodies[i], index, camera, &buffers);
+        break;
+    }
+  }
+  double far = 0;
+  for (float z : buffers.depth)
+    if (!std::isinf(z)) far = std::max(far, static_cast<double>(z));
+  const double unit = camera.focal_px / kViewDistance * 1e-3;  // pixels per mm, about
+  const cv::Mat_<float> behind = Behind(buffers.depth, far + kBehind, 9 * unit);
+
+  const Vector3d key =
+      Vector3d(-0.45, -0.75, -0.75).normalized();  // towards the light, camera frame
+  const Vector3d half_way = (key - Vector3d::UnitZ()).normalized();
+  std::vector<Isometry3d> X_BC;
+  for (const Body& body : bodies) X_BC.push_back((camera.X_CW * body.X_WB).inverse());
+  cv::Mat picture(size, CV_8UC3, cv::Scalar::all(255));
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const int index = buffers.body(y, x);
+      if (index < 0) continue;
+      const Body& body = bodies[static_cast<std::size_t>(index)];
+      const cv::Vec3f& nf = buffers.normal(y, x);
+      const Vector3d n(nf[0], nf[1], nf[2]);
+      Colour base = body.colour;
+      if (!(body.second_colour == body.colour)) {
+        const double z = buffers.depth(y, x);
+        const Vector3d p_B = X_BC[static_cast<std::size_t>(index)] *
+                             Vector3d((x - camera.centre_x_px) / camera.focal_px * z,
+                                      (y - camera.centre_y_px) / camera.focal_px * z, z);
+        if (p_B.x() * p_B.y() * p_B.z() > 0) base = body.second_colour;
+      }
+      const double diffuse = std::max(0.0, n.dot(key)), sky = 0.5 - 0.5 * n.y();
+      const double shadow = std::max(0.45, 1 - 26 * std::max(0.0, behind(y, x) - 0.001));
+      const double light = (0.46 + 0.16 * sky + 0.46 * diffuse) * shadow;
+      const double shine = 34 * shadow * std::pow(std::max(0.0, n.dot(half_way)), 28);
+      const auto tone = [&](std::uint8_t c) {
+        return static_cast<std::uint8_t>(std::clamp(c * light + shine, 0.0, 255.0));
+      };
+      picture.at<cv::Vec3b>(y, x) = {tone(base.b), tone(base.g), tone(base.r)};
+    }
+
+  cv::Mat contour(size, CV_8U, cv::Scalar(0));
+  const auto id = [&](int y, int x) {
+    const int index = buffers.body(y, x);
+    return index < 0 ? -1 : bodies[static_cast<std::size_t>(index)].id;
+  };
+  for (int y = 0; y + 1 < size.height; ++y)
+    for (int x = 0; x + 1 < size.width; ++x)
+      for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
+        const float z = buffers.depth(y, x), other = buffers.depth(y + dy, x + dx);
+        if (std::isinf(z) && std::isinf(other)) continue;
+        if (id(y, x) != id(y + dy, x + dx) || std::abs(z - other) > kContourDepth)
+          contour.at<std::uint8_t>(y, x) = 255;
+      }
+  const int width = std::max(1, static_cast<int>(std::lround(0.5 * unit)));
+  cv::dilate(contour, contour, cv::getStructuringElement(cv::MORPH_ELLIPSE, {width, width}));
+  cv::blur(contour, contour, {2, 2});
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const double keep = 1 - 0.75 * contour.at<std::uint8_t>(y, x) / 255.0;
+      auto& pixel = picture.at<cv::Vec3b>(y, x);
+      for (int k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint8_t>(pixel[k] * keep);
+    }
+  return picture;
+}
+
+}  // namespace regrasp

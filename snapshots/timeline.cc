@@ -1,0 +1,149 @@
+#include "snapshots/timeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <stdexcept>
+
+#include "core/sensing/noise.h"
+
+namespace regrasp {
+namespace {
+
+struct EventLook {
+  const char* text;
+  Marker marker;
+  Colour colour;
+};
+
+/// Nothing for kinds that the strips already show, and for those that come too often to mark.
+std::optional<EventLook> LookOfEvent(const Event& event) {
+  switch (event.kind) {
+    case EventKind::kContactLost:
+      return EventLook{"contact lost", Marker::kCross, kVermillion};
+    case EventKind::kContactMade:
+      return EventLook{"contact made", Marker::kPlus, kGreen};
+    case EventKind::kDropped:
+      return EventLook{"object dropped", Marker::kDown, kVermillion};
+    case EventKind::kFault:
+      return EventLook{"fault", Marker::kStar, kVermillion};
+    case EventKind::kSlip:
+      return EventLook{"slip", Marker::kDiamond, kOrange};
+    case EventKind::kNoise:
+      return EventLook{"noise changed", Marker::kSquare, kGrey};
+    case EventKind::kParameter:
+      return EventLook{"parameter changed", Marker::kDiamond, kGrey};
+    case EventKind::kPush:
+      return EventLook{"push", Marker::kUp, kBlue};
+    case EventKind::kReset:
+      return EventLook{"reset", Marker::kStar, kGrey};
+    case EventKind::kStandIn:
+      return EventLook{"stand-in lets go", Marker::kDisc, kBlue};
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
+                              const std::string& path) {
+  if (history.empty()) throw std::runtime_error(path + ": nothing to draw: the history is empty");
+  std::size_t start = history.size() - 1;
+  while (start > 0 && history[start - 1].time_s <= history[start].time_s) --start;
+  history = history.subspan(start);
+  if (last_s <= 0) return history;
+  const double from = history.back().time_s - last_s;
+  const auto first = std::find_if(history.begin(), history.end(), [from](const Frame& frame) {
+    return frame.time_s >= from - 1e-9;
+  });
+  return history.subspan(static_cast<std::size_t>(first - history.begin()));
+}
+
+std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object) {
+  const Frame& last = frames.back();
+  std::string text = fmt::format("seed {} · noise {}", last.seed, NoiseName(last.noise));
+  text += " · hand " + hand.name;
+  if (!object.empty()) text += " · object " + object;
+  text += fmt::format(" ({:.0f} g, µ {:.2g})", last.mass_kg * 1e3, last.friction);
+  if (frames.size() == 1) return text + fmt::format(" · simulated time {:.2f} s", last.time_s);
+  return text +
+         fmt::format(" · simulated time {:.2f} to {:.2f} s", frames.front().time_s, last.time_s);
+}
+
+std::string FingerName(const HandModel& hand, int finger) {
+  if (finger >= 0 && finger < hand.num_fingers()) return hand.fingers[finger].name;
+  return fmt::format("finger {}", finger);
+}
+
+std::vector<Band> Bands(std::span<const Frame> frames,
+                        const std::function<int(const Frame&)>& value) {
+  std::vector<Band> bands;
+  for (const Frame& frame : frames) {
+    const int now = value(frame);
+    if (!bands.empty()) bands.back().end_s = frame.time_s;
+    if (bands.empty() || bands.back().value != now)
+      bands.push_back({frame.time_s, frame.time_s, now});
+  }
+  std::erase_if(bands, [](const Band& band) { return band.value < 0; });
+  return bands;
+}
+
+void DrawStrip(Canvas* canvas, const Panel& panel, double y, double height, const std::string& name,
+               std::span<const Band> bands, const std::function<BandLook(int)>& look) {
+  for (const Band& band : bands) {
+    const double from = panel.At(band.begin_s, 0).x, to = panel.At(band.end_s, 0).x;
+    if (to <= from) continue;
+    const BandLook how = look(band.value);
+    canvas->FillBox({from, y, to - from, height}, how.colour);
+    const double size = std::min(17.0, 0.72 * height);
+    if (canvas->TextWidth(how.label, size) + 8 < to - from)
+      canvas->Text({(from + to) / 2, y + height / 2}, how.label,
+                   {.size = size, .align_x = AlignX::kCentre});
+    canvas->Line({from, y}, {from, y + height}, {kWhite, 1.5});
+  }
+  const Box all(panel.area.x, y, panel.area.width, height);
+  const std::vector<Point2> corners = {
+      all.tl(), {all.br().x, y}, all.br(), {all.x, y + height}, all.tl()};
+  canvas->Polyline(corners, {kLightGrey, 1});
+  canvas->Text({all.x - 12, y + height / 2}, name,
+               {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
+}
+
+void DrawStateBackground(Canvas* canvas, const Panel& panel, std::span<const Band> states) {
+  canvas->Clip(panel.area);
+  for (const Band& band : states) {
+    const double from = panel.At(band.begin_s, 0).x, to = panel.At(band.end_s, 0).x;
+    canvas->FillBox({from, panel.area.y, to - from, panel.area.height},
+                    Tint(StateColour(static_cast<SessionState>(band.value)), 0.72));
+  }
+  canvas->Unclip();
+}
+
+std::vector<LegendEntry> DrawEvents(Canvas* canvas, std::span<const Panel> panels, double y,
+                                    std::span<const Frame> frames, std::span<const Event> events) {
+  std::map<EventKind, LegendEntry> legend;
+  const Frame &first = frames.front(), &last = frames.back();
+  const double dt = last.tick > 0 ? last.time_s / static_cast<double>(last.tick) : 1e-3;
+  const Panel& top = panels.front();
+  double previous_x = -1e9;
+  for (const Event& event : events) {
+    const auto look = LookOfEvent(event);
+    if (!look || event.tick < first.tick || event.tick > last.tick) continue;
+    const double x = top.At(static_cast<double>(event.tick) * dt, 0).x;
+    if (x - previous_x > 3)
+      for (const Panel& panel : panels)
+        canvas->Line({x, panel.area.y}, {x, panel.area.br().y},
+                     {Tint(look->colour, 0.45), 1, {3, 5}});
+    previous_x = x;
+    canvas->Mark(look->marker, {x, y}, 5.5, look->colour);
+    legend.try_emplace(event.kind, MarkEntry(look->text, look->marker, look->colour));
+  }
+  std::vector<LegendEntry> entries;
+  for (auto& [kind, entry] : legend) entries.push_back(std::move(entry));
+  return entries;
+}
+
+}  // namespace regrasp
