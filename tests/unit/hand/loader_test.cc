@@ -1,0 +1,412 @@
+/// The loaders refuse what is wrong, and say where, what and what is allowed.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "core/hand/mesh.h"
+#include "core/hand/scenario.h"
+#include "core/hand/urdf.h"
+
+namespace regrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kHandUrdf = R"(<robot name="mini">
+  <link name="palm"/>
+  <link name="upper">
+    <inertial><origin xyz="0 0 0.02"/><mass value="0.03"/>
+      <inertia ixx="4e-6" ixy="0" ixz="0" iyy="4e-6" iyz="0" izz="1e-6"/></inertial>
+    <collision><geometry><box size="0.01 0.01 0.04"/></geometry></collision>
+  </link>
+  <link name="tip">
+    <inertial><mass value="0.01"/><inertia ixx="2e-6" ixy="0" ixz="0" iyy="2e-6" iyz="0" izz="1e-6"/></inertial>
+    <collision><origin xyz="0 0 0.01"/><geometry><cylinder radius="0.005" length="0.02"/></geometry></collision>
+  </link>
+  <joint name="A" type="revolute"><parent link="palm"/><child link="upper"/><origin xyz="0 0 0.1"/>
+    <axis xyz="2 0 0"/><limit lower="0" upper="1.5" effort="2" velocity="10"/><dynamics damping="0.05"/></joint>
+  <joint name="B" type="revolute"><parent link="upper"/><child link="tip"/><origin xyz="0 0 0.04"/>
+    <axis xyz="1 0 0"/><limit lower="-0.5" upper="1.5" effort="1" velocity="10"/></joint>
+</robot>
+)";
+
+const char* const kScenarioToml = R"(object = "ball"
+gravity_m_s2 = [0, 0, -9.81]
+armature_kg_m2 = 1e-4
+[object_pose]
+position_m = [0, -0.05, 0.1]
+[[finger]]
+name = "only"
+tip_link = "tip"
+[q_preshape_deg]
+A = 10
+B = 20.5
+[q_closed_deg]
+A = 60
+B = 70
+)";
+
+const char* const kBallUrdf = R"(<robot name="ball"><link name="object">
+  <inertial><mass value="0.08"/><inertia ixx="2e-5" ixy="0" ixz="0" iyy="2e-5" iyz="0" izz="2e-5"/></inertial>
+  <collision><geometry><sphere radius="0.025"/></geometry></collision>
+</link></robot>
+)";
+
+const char* const kTetrahedron = R"(v 0 0 0
+v 0.03 0 0
+v 0 0.03 0
+v 0 0 0.03
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+)";
+
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// A models directory of its own, with a hand "mini" and an object "ball".
+class LoaderTest : public testing::Test {
+ protected:
+  LoaderTest() {
+    std::string name = (fs::temp_directory_path() / "regrasp_loader_XXXXXX").string();
+    EXPECT_NE(mkdtemp(name.data()), nullptr);
+    root_ = name;
+    fs::create_directories(root_ / "hands");
+    fs::create_directories(root_ / "objects");
+    Write("hands/mini.urdf", kHandUrdf);
+    Write("hands/mini.toml", kScenarioToml);
+    Write("objects/ball.urdf", kBallUrdf);
+  }
+  ~LoaderTest() override { fs::remove_all(root_); }
+
+  void Write(const std::string& file, const std::string& text) {
+    std::ofstream(root_ / file) << text;
+  }
+  void EditHand(const std::string& from, const std::string& to) {
+    Write("hands/mini.urdf", Replaced(kHandUrdf, from, to));
+  }
+  void EditScenario(const std::string& from, const std::string& to) {
+    Write("hands/mini.toml", Replaced(kScenarioToml, from, to));
+  }
+  void EditBall(const std::string& from, const std::string& to) {
+    Write("objects/ball.urdf", Replaced(kBallUrdf, from, to));
+  }
+  LoadedScenario Load(const std::string& hand = "mini", const std::string& object = "") const {
+    return LoadScenario(hand, object, {root_});
+  }
+  /// Loading must throw a ModelError that contains every one of `words`.
+  void ExpectRefused(std::initializer_list<const char*> words, const std::string& hand = "mini",
+                     const std::string& object = "") const {
+    try {
+      Load(hand, object);
+      FAIL() << "was not refused";
+    } catch (const ModelError& error) {
+      for (const char* word : words)
+        EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
+            << word << " not in: " << error.what();
+    }
+  }
+
+  fs::path root_;
+};
+
+TEST_F(LoaderTest, ReadsWhatTheFilesSay) {
+  const LoadedScenario loaded = Load();
+  const HandModel& hand = loaded.hand;
+  ASSERT_EQ(hand.num_joints(), 2);
+  ASSERT_EQ(hand.links.size(), 3u);
+  EXPECT_EQ(hand.name, "mini");
+  EXPECT_EQ(hand.links[0].parent_joint, -1);
+  EXPECT_EQ(hand.links[1].parent_joint, 0);
+  EXPECT_EQ(hand.joints[0].name, "A");
+  EXPECT_EQ(hand.joints[0].axis_J, Vector3d::UnitX());  // normalised
+  EXPECT_EQ(hand.joints[0].damping, 0.05);
+  EXPECT_EQ(hand.joints[1].damping, 0);
+  EXPECT_EQ(hand.joints[1].armature, 1e-4);
+  EXPECT_EQ(hand.joints[1].lower, -0.5);
+  EXPECT_EQ(hand.links[1].shapes.at(0).kind, Shape::Kind::kBox);
+  EXPECT_EQ(hand.links[1].shapes[0].half_extents, Vector3d(0.005, 0.005, 0.02));
+  ASSERT_EQ(hand.FindFinger("only"), 0);
+  EXPECT_EQ(hand.fingers[0].joints, (std::vector<int>{0, 1}));
+  // The cylinder's length is the segment's length, and its far end the fingertip.
+  EXPECT_LT((hand.fingers[0].p_LF - Vector3d(0, 0, 0.02)).norm(), 1e-15);
+  EXPECT_EQ(hand.fingers[0].tip_radius, 0.005);
+  EXPECT_DOUBLE_EQ(loaded.scenario.q_preshape[1], 20.5 * M_PI / 180);
+  EXPECT_DOUBLE_EQ(loaded.scenario.q_closed[0], 60 * M_PI / 180);
+  EXPECT_EQ(loaded.scenario.X_WO.translation(), Vector3d(0, -0.05, 0.1));
+  EXPECT_EQ(loaded.object.name, "ball");
+  EXPECT_EQ(loaded.object.radius, 0.025);
+  EXPECT_EQ(loaded.object.friction, 0.8);
+}
+
+TEST_F(LoaderTest, MergesFixedLinksIntoTheirParent) {
+  EditHand("</robot>", R"(<link name="pad"><inertial><origin xyz="0 0 0.01"/><mass value="0.01"/>
+      <inertia ixx="2e-6" ixy="0" ixz="0" iyy="2e-6" iyz="0" izz="1e-6"/></inertial></link>
+    <joint name="F" type="fixed"><parent link="tip"/><child link="pad"/><origin xyz="0 0.02 0" rpy="1.5707963267948966 0 0"/></joint></robot>)");
+  EditScenario("tip_link = \"tip\"",
+               "tip_link = \"pad\"");  // a frame fixed to the tip names the tip
+  const HandModel hand = Load().hand;
+  ASSERT_EQ(hand.links.size(), 3u);
+  const Link& tip = hand.links[2];
+  EXPECT_EQ(hand.fingers[0].tip_link, 2);
+  EXPECT_DOUBLE_EQ(tip.mass, 0.02);
+  // The pad's centre (0, 0, .01) is turned to -y: (0, .01, 0) in the tip, half way: (0, .005, 0).
+  EXPECT_LT((tip.p_LCom - Vector3d(0, 0.005, 0)).norm(), 1e-12);
+  // Two points of 10 g, 5 mm from the centre along y: 5e-7 about x and z; the pad's z moment is now
+  // about y.
+  const Vector3d expected(4e-6 + 5e-7, 2e-6 + 1e-6, 1e-6 + 2e-6 + 5e-7);
+  EXPECT_LT((tip.I_LCom - Matrix3d(expected.asDiagonal())).norm(), 1e-15);
+}
+
+TEST_F(LoaderTest, RefusesBadHands) {
+  struct Case {
+    const char *from, *to;
+    std::initializer_list<const char*> words;
+  };
+  const Case cases[] = {
+      {"lower=\"0\"",
+       "lower=\"1.6\"",
+       {"mini.urdf", "joint \"A\"", "1.6", "less than upper = 1.5"}},
+      {"upper=\"1.5\"", "upper=\"inf\"", {"mini.urdf"}},
+      {"upper=\"1.5\"", "upper=\"90\"", {"joint \"A\"", "upper", "90", "3.14159"}},
+      {"effort=\"2\"", "effort=\"0\"", {"joint \"A\"", "effort", "0", "> 0"}},
+      {"damping=\"0.05\"", "damping=\"-1\"", {"joint \"A\"", "damping", "-1", ">= 0"}},
+      {"xyz=\"2 0 0\"", "xyz=\"0 0 0\"", {"joint \"A\"", "<axis>", "must not be zero"}},
+      {"<mass value=\"0.03\"/>",
+       "<mass value=\"-0.03\"/>",
+       {"link \"upper\"", "<mass>", "-0.03", "> 0"}},
+      {"<mass value=\"0.03\"/>", "<mass value=\"0\"/>", {"link \"upper\"", "<mass>", "> 0"}},
+      {"ixx=\"4e-6\"", "ixx=\"-4e-6\"", {"link \"upper\"", "<inertia>", "-4e-06", "> 0"}},
+      {"ixx=\"4e-6\"",
+       "ixx=\"9e-6\"",
+       {"link \"upper\"", "<inertia>", "9e-06", "sum of the other two"}},
+      {"xyz=\"0 0 0.04\"", "xyz=\"0 0 40\"", {"joint \"B\"", "<origin>", "40", "-10 .. 10"}},
+      {"size=\"0.01 0.01 0.04\"", "size=\"0.01 0 0.04\"", {"link \"upper\"", "<box>", "> 0"}},
+      {"length=\"0.02\"", "length=\"0\"", {"link \"tip\"", "<cylinder> length", "> 0"}},
+      {"<cylinder radius=\"0.005\" length=\"0.02\"/>",
+       "<box size=\"0.01 0.01 0.01\"/>",
+       {"finger \"only\"", "link \"tip\"", "capsule"}},
+      {"<cylinder radius=\"0.005\" length=\"0.02\"/>",
+       "<mesh filename=\"tip.stl\"/>",
+       {"link \"tip\"", "<mesh>", "sphere, cylinder, box"}},
+      {"\"A\" type=\"revolute\"",
+       "\"A\" type=\"prismatic\"",
+       {"joint \"A\"", "revolute and fixed"}},
+      {"\"A\" type=\"revolute\"",
+       "\"A\" type=\"continuous\"",
+       {"joint \"A\"", "revolute and fixed"}},
+      {"<axis xyz=\"2 0 0\"/>",
+       "<axis xyz=\"2 0 0\"/><mimic joint=\"B\"/>",
+       {"joint \"A\"", "<mimic>"}},
+      {"<joint name=\"B\"", "<joint name=\"A\"", {"mini.urdf", "A"}},
+      {"<link name=\"tip\">", "<link name=\"upper\">", {"mini.urdf", "upper"}},
+      {"<child link=\"tip\"/>", "<child link=\"nail\"/>", {"mini.urdf", "nail"}},
+      {"</robot>", "<link name=\"loose\"/></robot>", {"mini.urdf", "root"}},
+      {"</robot>",
+       "<joint name=\"C\" type=\"fixed\"><parent link=\"palm\"/><child "
+       "link=\"tip\"/></joint></robot>",
+       {"link \"tip\"", "\"B\"", "\"C\"", "allowed is one"}},
+      {"</robot>",
+       "<link name=\"x\"/><link name=\"y\"/>"
+       "<joint name=\"C\" type=\"fixed\"><parent link=\"x\"/><child link=\"y\"/></joint>"
+       "<joint name=\"D\" type=\"fixed\"><parent link=\"y\"/><child link=\"x\"/></joint></robot>",
+       {"link \"x\"", "not connected", "palm"}},
+      {"<robot name=\"mini\">", "<robot", {"mini.urdf", "not a valid URDF"}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(std::string(c.from) + " -> " + c.to);
+    EditHand(c.from, c.to);
+    ExpectRefused(c.words);
+  }
+}
+
+TEST_F(LoaderTest, RefusesMovingLinksWithoutMass) {
+  std::string text = kHandUrdf;
+  const std::size_t begin = text.find("<inertial><mass");
+  const std::size_t end = text.find("</inertial>", begin) + std::string("</inertial>").size();
+  Write("hands/mini.urdf", text.erase(begin, end - begin));
+  ExpectRefused({"mini.urdf", "link \"tip\"", "<inertial>"});
+}
+
+TEST_F(LoaderTest, RefusesHandsBeyondTheCapacities) {
+  std::ostringstream urdf;
+  const char* const body =
+      "<inertial><mass value=\"0.01\"/><inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" "
+      "iyz=\"0\" "
+      "izz=\"1e-6\"/></inertial><collision><geometry><sphere "
+      "radius=\"0.005\"/></geometry></collision>";
+  urdf << "<robot name=\"mini\"><link name=\"l0\"/>";
+  for (int i = 1; i <= kMaxJoints + 1; ++i)
+    urdf << "<link name=\"l" << i << "\">" << body << "</link><joint name=\"j" << i
+         << "\" type=\"revolute\"><parent link=\"l" << i - 1 << "\"/><child link=\"l" << i
+         << "\"/><limit lower=\"0\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>";
+  urdf << "</robot>";
+  Write("hands/mini.urdf", urdf.str());
+  EditScenario("\"tip\"", "\"l9\"");
+  ExpectRefused({"finger \"only\"", "9 revolute joints", "1 .. 8"});
+  EditScenario("\"tip\"", "\"l8\"");
+  ExpectRefused({"more than 32 revolute joints"});
+}
+
+TEST_F(LoaderTest, RefusesBadScenarios) {
+  struct Case {
+    const char *from, *to;
+    std::initializer_list<const char*> words;
+  };
+  const Case cases[] = {
+      {"armature_kg_m2",
+       "armatur_kg_m2",
+       {"mini.toml:3", "\"armatur_kg_m2\"", "nearest is \"armature_kg_m2\""}},
+      {"position_m", "positon_m", {"mini.toml:5", "nearest is \"position_m\""}},
+      {"tip_link", "tiplink", {"mini.toml:8", "nearest is \"tip_link\""}},
+      {"B = 70", "BB = 70", {"mini.toml:14", "\"BB\"", "nearest is \"B\""}},
+      {"B = 70\n", "", {"mini.toml:12", "\"B\" is missing"}},
+      {"A = 60", "A = 86", {"mini.toml:13", "q_closed_deg.A", "86", "85.94"}},
+      {"A = 60", "A = nan", {"mini.toml:13", "q_closed_deg.A", "nan"}},
+      {"A = 60", "A = \"60\"", {"mini.toml:13", "must be a number"}},
+      {"armature_kg_m2 = 1e-4",
+       "armature_kg_m2 = -1e-4",
+       {"mini.toml:3", "armature_kg_m2", "0 .. 0.1"}},
+      {"[0, 0, -9.81]", "[0, -9.81]", {"mini.toml:2", "gravity_m_s2", "3 numbers"}},
+      {"[0, 0, -9.81]", "[0, 0, -981]", {"mini.toml:2", "gravity_m_s2", "-100 .. 100"}},
+      {"\"tip\"", "\"nail\"", {"mini.urdf", "finger \"only\"", "\"nail\"", "palm, tip, upper"}},
+      {"\"tip\"", "\"palm\"", {"finger \"only\"", "0 revolute joints", "1 .. 8"}},
+      {"[q_preshape_deg]",
+       "[[finger]]\nname = \"only\"\ntip_link = \"upper\"\n[q_preshape_deg]",
+       {"mini.toml:9", "\"only\" is used twice"}},
+      {"[q_preshape_deg]",
+       "[[finger]]\nname = \"two\"\ntip_link = \"tip\"\n[q_preshape_deg]",
+       {"mini.toml:9", "\"tip\" is used twice"}},
+      {"object = \"ball\"", "object = \"bal\"", {"\"bal\"", "available are ball"}},
+      {"object = \"ball\"", "object = ", {"mini.toml:1", "not valid TOML"}},
+      {"[object_pose]", "[object_pose", {"mini.toml:4", "not valid TOML"}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(std::string(c.from) + " -> " + c.to);
+    EditScenario(c.from, c.to);
+    ExpectRefused(c.words);
+  }
+}
+
+TEST_F(LoaderTest, RefusesBadObjects) {
+  struct Case {
+    const char *from, *to;
+    std::initializer_list<const char*> words;
+  };
+  const Case cases[] = {
+      {"radius=\"0.025\"",
+       "radius=\"-1\"",
+       {"ball.urdf", "link \"object\"", "<sphere> radius", "> 0"}},
+      {"radius=\"0.025\"", "radius=\"25\"", {"ball.urdf", "bounding radius", "25", "0.001 .. 1"}},
+      {"value=\"0.08\"", "value=\"nan\"", {"ball.urdf"}},
+      {"<collision>", "<collision><origin xyz=\"0 0 0.01\"/>", {"ball.urdf", "centre of mass"}},
+      {"<inertial>", "<inertial><origin xyz=\"0 0 0.01\"/>", {"ball.urdf", "centre of mass"}},
+      {"</robot>",
+       "<link name=\"b\"/><joint name=\"j\" type=\"fixed\"><parent link=\"object\"/><child "
+       "link=\"b\"/></joint></robot>",
+       {"ball.urdf", "exactly one link", "2"}},
+      {"<sphere radius=\"0.025\"/>", "<mesh filename=\"no.obj\"/>", {"no.obj", "not found"}},
+      {"<sphere radius=\"0.025\"/>",
+       "<mesh filename=\"package://a/b.obj\"/>",
+       {"ball.urdf", "package://a/b.obj"}},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(std::string(c.from) + " -> " + c.to);
+    EditBall(c.from, c.to);
+    ExpectRefused(c.words);
+  }
+  std::string text = kBallUrdf;
+  const std::size_t begin = text.find("<inertial>");
+  Write("objects/ball.urdf", text.erase(begin, text.find("</inertial>") + 11 - begin));
+  ExpectRefused({"ball.urdf", "link \"object\"", "<inertial>"});
+}
+
+TEST_F(LoaderTest, ReadsFrictionBesideTheObject) {
+  Write("objects/ball.toml", "friction = 0.35\n");
+  EXPECT_EQ(Load().object.friction, 0.35);
+  Write("objects/ball.toml", "friction = 1.5\n");
+  ExpectRefused({"ball.toml:1", "friction", "1.5", "1"});
+  Write("objects/ball.toml", "frictoin = 0.5\n");
+  ExpectRefused({"ball.toml:1", "nearest is \"friction\""});
+}
+
+TEST_F(LoaderTest, AnswersUnknownNamesWithTheKnownOnes) {
+  ExpectRefused({"\"maxi\"", "available are mini"}, "maxi");
+  ExpectRefused({"\"cone\"", "available are ball"}, "mini", "cone");
+  ExpectRefused({"gone.urdf", "not found"}, "gone.urdf");
+  ExpectRefused({"available are mini"}, "../hands/mini");
+  ExpectRefused({"available are mini"}, "");
+  fs::remove(root_ / "hands/mini.toml");
+  ExpectRefused({"mini.toml", "not found"});
+}
+
+TEST_F(LoaderTest, TakesFilesOutsideTheSearchPath) {
+  const LoadedScenario loaded =
+      LoadScenario((root_ / "hands/mini.urdf").string(), (root_ / "objects/ball.urdf").string(),
+                   ModelSearchPath());
+  EXPECT_EQ(loaded.hand.name, "mini");
+  EXPECT_EQ(loaded.object.name, "ball");
+}
+
+TEST_F(LoaderTest, SearchesDirectoriesInOrder) {
+  const auto path = ModelSearchPath(root_.string());
+  ASSERT_GE(path.size(), 2u);
+  EXPECT_EQ(path[0], fs::canonical(root_));
+  const auto objects = ListObjects(path);
+  EXPECT_NE(std::find(objects.begin(), objects.end(), "ball"), objects.end());
+  EXPECT_NE(std::find(objects.begin(), objects.end(), "egg"), objects.end());
+  EXPECT_TRUE(std::is_sorted(objects.begin(), objects.end()));
+  EditBall("radius=\"0.025\"", "radius=\"0.03\"");
+  fs::rename(root_ / "objects/ball.urdf", root_ / "objects/sphere.urdf");
+  EXPECT_EQ(LoadObject("sphere", path).radius,
+            0.03);  // ours hides the one that comes with the program
+  EXPECT_THROW(ModelSearchPath((root_ / "none").string()), ModelError);
+}
+
+TEST_F(LoaderTest, ReadsClosedMeshesAndCentresThem) {
+  Write("objects/tetra.obj", kTetrahedron);
+  EditBall("<sphere radius=\"0.025\"/>", "<mesh filename=\"tetra.obj\" scale=\"2 2 2\"/>");
+  Write("objects/ball.urdf",
+        Replaced(Replaced(kBallUrdf, "<sphere radius=\"0.025\"/>",
+                          "<mesh filename=\"tetra.obj\" scale=\"2 2 2\"/>"),
+                 "<inertial>", "<inertial><origin xyz=\"0.015 0.015 0.015\"/>"));
+  const ObjectModel object = Load().object;
+  EXPECT_EQ(object.kind, ObjectModel::Kind::kMesh);
+  ASSERT_EQ(object.vertices_O.size(), 4u);
+  ASSERT_EQ(object.triangles.size(), 4u);
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& v : object.vertices_O) sum += v;
+  EXPECT_LT(sum.norm(), 1e-8);  // mesh files are read in single precision
+  EXPECT_NEAR(object.bounding_radius, std::sqrt(0.045 * 0.045 + 2 * 0.015 * 0.015), 1e-8);
+}
+
+TEST_F(LoaderTest, RefusesOpenAndInsideOutMeshes) {
+  EditBall("<sphere radius=\"0.025\"/>", "<mesh filename=\"tetra.obj\"/>");
+  Write("objects/tetra.obj",
+        Replaced(Replaced(kTetrahedron, "f 2 3 4\n", ""), "f 1 3 2\n", "f 1 3 2\nf 1 2 3\n"));
+  ExpectRefused({"tetra.obj", "not closed", "two triangles"});
+  Write("objects/tetra.obj", Replaced(kTetrahedron, "f 2 3 4\n", "f 2 4 3\n"));
+  ExpectRefused({"tetra.obj", "not closed"});
+  Write("objects/tetra.obj",
+        Replaced(
+            Replaced(Replaced(Replaced(kTetrahedron, "f 1 3 2", "f 1 2 3"), "f 1 2 4", "f 1 4 2"),
+                     "f 1 4 3", "f 1 3 4"),
+            "f 2 3 4", "f 2 4 3"));
+  ExpectRefused({"tetra.obj", "volume is -", "counter-clockwise"});
+  Write("objects/tetra.obj", "f one two\n");
+  ExpectRefused({"tetra.obj"});
+}
+
+}  // namespace
+}  // namespace regrasp
