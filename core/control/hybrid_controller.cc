@@ -145,24 +145,21 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
     } else {
       const FingerPinv pinv = DampedPinv(f.J, parameters.pinv_damping);
       FingerVector posture(n);
-      for (int k = 0; k < n; ++k)
-        posture[k] = parameters.posture_stiffness * (q_rest_[joints[k]] - estimate.q[joints[k]]);
+      for (int k = 0; k < n; ++k) {
+        const Joint& joint = hand_->joints[joints[k]];
+        const double q = estimate.q[joints[k]];
+        posture[k] = parameters.posture_stiffness * (q_rest_[joints[k]] - q);
+        const double below = joint.lower + parameters.limit_margin - q;
+        const double above = q - (joint.upper - parameters.limit_margin);
+        if (below > 0) posture[k] += parameters.limit_stiffness * below;
+        if (above > 0) posture[k] -= parameters.limit_stiffness * above;
+      }
       const FingerVector qdot_ref = pinv * v_ref[i];
       const Vector3d along = f.J * posture;
       tau = f.J.transpose() * commanded_[i] + posture - pinv * along;
       for (int k = 0; k < n; ++k) tau[k] += hand_->joints[joints[k]].damping * qdot_ref[k];
     }
-    for (int k = 0; k < n; ++k) {
-      const Joint& joint = hand_->joints[joints[k]];
-      const double q = estimate.q[joints[k]];
-      const double below = joint.lower + parameters.limit_margin - q;
-      const double above = q - (joint.upper - parameters.limit_margin);
-      if (task.mode != FingerMode::kPosture) {
-        if (below > 0) tau[k] += parameters.limit_stiffness * below;
-        if (above > 0) tau[k] -= parameters.limit_stiffness * above;
-      }
-      torque_[joints[k]] += tau[k];
-    }
+    for (int k = 0; k < n; ++k) torque_[joints[k]] += tau[k];
   }
   return torque_;
 }

@@ -9,8 +9,8 @@
 ///   reaching finger    fingertip position control without contact
 ///   posture            joint position control
 ///
-/// To each: gravity compensation, a posture spring in the null space of the contact force, a spring
-/// that keeps joints off their limits, and d * qdot_ref against the joints' own damping d, with
+/// To each: gravity compensation, a posture spring and a spring away from joint limits, both in the null
+/// space of the contact force, and d * qdot_ref against the joints' own damping d, with
 /// qdot_ref = J⁺ v of the wanted contact velocity v.
 
 #include <array>

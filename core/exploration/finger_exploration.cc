@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/exploration/walls.h"
+
 namespace regrasp {
 namespace {
 
@@ -23,7 +25,7 @@ void FingerExploration::EnterPhase(Phase phase) {
   ticks_ = 0;
 }
 
-void FingerExploration::Update(const Estimate& estimate, unsigned grasp,
+void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
                                const ControlParameters& control,
                                const ExplorationParameters& parameters, double dt,
                                HybridController* controller, FingerTasks* tasks) {
@@ -60,7 +62,8 @@ void FingerExploration::Update(const Estimate& estimate, unsigned grasp,
   task.mode = FingerMode::kSlide;
   task.force = parameters.normal_force;
   task.v_W.setZero();
-  const SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_};
+  SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
+  FindWalls(hand, estimate, request_.finger, parameters, &input.walls_W);
 
   if (phase_ == Phase::kSettle) {
     if (stop_) {

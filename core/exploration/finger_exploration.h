@@ -33,7 +33,7 @@ class FingerExploration {
   void Stop();
   /// One tick; changes the tasks of `request.finger` only. `grasp`: bits of the fingers that form the
   /// grasp, this one included. dt [s].
-  void Update(const Estimate& estimate, unsigned grasp, const ControlParameters& control,
+  void Update(const HandModel& hand, const Estimate& estimate, unsigned grasp, const ControlParameters& control,
               const ExplorationParameters& parameters, double dt, HybridController* controller,
               FingerTasks* tasks);
 

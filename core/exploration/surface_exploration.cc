@@ -18,6 +18,17 @@ constexpr double kRidge = 2e-8;  // m²
 
 }  // namespace
 
+Vector3d SurfaceExploration::FreeGradient(const Input& input,
+                                          const ExplorationParameters& parameters) const {
+  Vector3d gradient = TangentPart(gradient_W_, input.normal_W);
+  const Vector3d excursion = TangentPart(input.p_WC - p_WC_start_, input.normal_W);
+  const double distance = excursion.norm();
+  if (distance > parameters.max_excursion)
+    gradient -= std::max(0.0, gradient.dot(excursion) / distance) * excursion / distance;
+  for (const Vector3d& wall : input.walls_W) gradient -= std::max(0.0, gradient.dot(wall)) * wall;
+  return gradient;
+}
+
 void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uint64_t seed,
                                int max_cycles, const ExplorationParameters& parameters) {
   *this = SurfaceExploration();
@@ -55,23 +66,17 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
     p_WC_prev_ = input.p_WC;                                                          // line 9
     phi_prev_ = input.phi;
     ++updates_;
-    gradient_norm_ = TangentPart(gradient_W_, input.normal_W).norm();
+    gradient_norm_ = FreeGradient(input, parameters).norm();
     small_updates_ = gradient_norm_ <= parameters.epsilon ? small_updates_ + 1 : 0;
     if (small_updates_ >= static_cast<int>(parameters.converged_updates)) return Status::kConverged;
   }
 
-  const Vector3d tangent = TangentPart(gradient_W_, input.normal_W);
+  const Vector3d tangent = FreeGradient(input, parameters);
   const double norm = tangent.norm();
   velocity_W_.setZero();
   if (norm > 1e-9) {  // line 11
     const double speed = std::clamp(parameters.eta * norm, parameters.speed_min, parameters.speed_max);
     velocity_W_ = tangent * (speed / norm);
-  }
-  const Vector3d excursion = TangentPart(input.p_WC - p_WC_start_, input.normal_W);
-  const double distance = excursion.norm();
-  if (distance > parameters.max_excursion) {
-    const Vector3d outward = excursion / distance;
-    velocity_W_ -= std::max(0.0, velocity_W_.dot(outward)) * outward;
   }
   if (least_squares) {
     const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;

@@ -19,12 +19,15 @@
 ///    runs whose estimate merely crosses zero.
 ///  - line 4: an update also waits until the contact has moved by `min_displacement`.
 ///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
-///  - line 11: the displacement is per second, limited to [speed_min, speed_max]; beyond `max_excursion`
-///    from the start its outward part is removed.
+///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit and at
+///    another finger (walls) the part of the gradient that points on is removed, from the motion and from
+///    the test: a constrained maximum counts as converged.
+///  - line 11: the displacement is per second, limited to [speed_min, speed_max].
 /// The class knows nothing of the hand: it turns contact points and values of phi into velocities.
 
 #include <cstdint>
 
+#include "core/common/fixed_vector.h"
 #include "core/common/random.h"
 #include "core/exploration/gradient_estimator.h"
 
@@ -39,6 +42,8 @@ class SurfaceExploration {
     Vector3d p_WC = Vector3d::Zero();        ///< sensed contact point [m]
     Vector3d normal_W = Vector3d::UnitZ();   ///< sensed outward object normal
     double phi = 0;                          ///< objective, of order 1
+    /// Unit tangents in which the finger must not go on: joint limits, other fingers.
+    FixedVector<Vector3d, 8> walls_W;
   };
 
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.
@@ -51,12 +56,15 @@ class SurfaceExploration {
   const Vector3d& velocity_W() const { return velocity_W_; }
   /// The smoothed gradient, in W [1/m].
   const Vector3d& gradient_W() const { return gradient_W_; }
-  /// |P R_WCᵀ gradient| at the last update [1/m].
+  /// |P R_WCᵀ gradient| of the last update, what points into walls removed [1/m].
   double gradient_norm() const { return gradient_norm_; }
   int cycle() const { return cycle_; }
   void AddTo(StateHasher* hasher) const;
 
  private:
+  /// The part of the gradient along which the finger may move, in W [1/m].
+  Vector3d FreeGradient(const Input& input, const ExplorationParameters& parameters) const;
+
   Estimator estimator_ = Estimator::kLeastSquares;
   RandomStream random_;
   LeastSquaresEstimator least_squares_;

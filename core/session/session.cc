@@ -402,7 +402,7 @@ struct Session::Impl {
 
   void UpdateExploration() {
     const bool was_on_stability = exploration.on_stability();
-    exploration.Update(estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
+    exploration.Update(hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
                        dt, &controller, &tasks);
     const int finger = exploration.request().finger;
     if (exploration.on_stability() != was_on_stability)
