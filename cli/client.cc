@@ -1,0 +1,202 @@
+#include "cli/client.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "cli/errors.h"
+
+namespace regrasp::cli {
+namespace {
+
+// A daemon that sends a longer line than this is not ours.
+constexpr std::size_t kMaxReplyBytes = 64u << 20;
+
+sockaddr_un Address(const std::string& path) {
+  sockaddr_un address = {};
+  address.sun_family = AF_UNIX;
+  if (path.empty() || path.size() >= sizeof address.sun_path) {
+    throw CliError(kUsage,
+                   fmt::format("socket path '{}' has {} bytes; allowed are 1 to {}", path, path.size(),
+                               sizeof address.sun_path - 1),
+                   "regrasp -s /tmp/regrasp.sock status");
+  }
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  return address;
+}
+
+[[noreturn]] void RefuseConnection(const std::string& path, int error) {
+  struct stat info;
+  const bool exists = ::stat(path.c_str(), &info) == 0;
+  if (error == EACCES || error == EPERM) {
+    throw CliError(kPermission, fmt::format("not allowed to open {}", path),
+                   "regrasp doctor    (or run as the user who started the daemon)");
+  }
+  if (exists && !S_ISSOCK(info.st_mode)) {
+    throw CliError(kNoDaemon, fmt::format("{} is not a socket", path),
+                   "regrasp -s OTHER_PATH status");
+  }
+  if (error == ENOENT || error == ENOTDIR) {
+    throw CliError(kNoDaemon, fmt::format("no daemon: {} does not exist", path), "regrasp up");
+  }
+  if (error == ECONNREFUSED) {
+    throw CliError(kNoDaemon, fmt::format("no daemon: nobody listens on {} (stale socket)", path),
+                   "regrasp up");
+  }
+  throw CliError(kNoDaemon, fmt::format("cannot connect to {}: {}", path, std::strerror(error)),
+                 "regrasp doctor");
+}
+
+}  // namespace
+
+Client::Client(std::string path, double timeout_s) : path_(std::move(path)), timeout_s_(timeout_s) {
+  const sockaddr_un address = Address(path_);
+  const auto deadline = Deadline(timeout_s);
+  fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (fd_ < 0) throw CliError(kIo, fmt::format("cannot make a socket: {}", std::strerror(errno)));
+  while (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    const int error = errno;
+    try {
+      // EAGAIN: the daemon's queue of new connections is full; a Unix socket must simply try again.
+      if (error != EAGAIN && error != EINTR) RefuseConnection(path_, error);
+      if (Clock::now() > deadline) {
+        throw CliError(kTimeout, fmt::format("{} accepts no connection", path_), "regrasp doctor");
+      }
+      WaitFor(-1, 0, Deadline(0.005));
+    } catch (...) {
+      ::close(std::exchange(fd_, -1));
+      throw;
+    }
+  }
+}
+
+Client::~Client() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void Client::Lost() const {
+  throw CliError(kNoDaemon, fmt::format("the daemon on {} closed the connection", path_), "regrasp up");
+}
+
+void Client::Send(const std::string& line, Clock::time_point deadline) {
+  std::size_t sent = 0;
+  while (sent < line.size()) {
+    const ssize_t n = ::send(fd_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+    if (n >= 0) {
+      sent += static_cast<std::size_t>(n);
+    } else if (errno == EAGAIN) {
+      if (!WaitFor(fd_, POLLOUT, deadline)) {
+        throw CliError(kTimeout, fmt::format("the daemon on {} does not read", path_), "regrasp doctor");
+      }
+    } else if (errno == EPIPE || errno == ECONNRESET) {
+      return;  // its last words, if any, are still to be read
+    } else if (errno != EINTR) {
+      throw CliError(kIo, fmt::format("cannot write to {}: {}", path_, std::strerror(errno)));
+    }
+  }
+}
+
+std::optional<std::string> Client::ReadLine(Clock::time_point deadline) {
+  while (true) {
+    const auto end = buffer_.find('\n', scanned_);
+    if (end != std::string::npos) {
+      std::string line = buffer_.substr(0, end);
+      buffer_.erase(0, end + 1);
+      scanned_ = 0;
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      if (line.empty()) continue;
+      return line;
+    }
+    scanned_ = buffer_.size();
+    if (scanned_ > kMaxReplyBytes) {
+      throw CliError(kProtocol, fmt::format("an answer from {} is longer than 64 MiB", path_));
+    }
+    char chunk[65536];
+    const ssize_t n = ::recv(fd_, chunk, sizeof chunk, 0);
+    if (n > 0) {
+      buffer_.append(chunk, static_cast<std::size_t>(n));
+    } else if (n == 0 || errno == ECONNRESET) {
+      Lost();
+    } else if (errno == EAGAIN) {
+      if (!WaitFor(fd_, POLLIN, deadline)) return std::nullopt;
+    } else if (errno != EINTR) {
+      throw CliError(kIo, fmt::format("cannot read from {}: {}", path_, std::strerror(errno)));
+    }
+  }
+}
+
+Json Client::Call(const std::string& method, const Json& params) {
+  return Call(method, params, timeout_s_);
+}
+
+Json Client::Call(const std::string& method, const Json& params, double timeout_s) {
+  const auto deadline = Deadline(timeout_s);
+  const long id = next_id_++;
+  Json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}};
+  if (!params.empty()) request["params"] = params;
+  Send(request.dump() + "\n", deadline);
+  while (true) {
+    const auto line = ReadLine(deadline);
+    if (!line) {
+      throw CliError(kTimeout, fmt::format("no answer to '{}' within {:g} s", method, timeout_s),
+                     fmt::format("regrasp --timeout {:g} …, or regrasp doctor", 10 * timeout_s));
+    }
+    Json message = Json::parse(*line, nullptr, false);
+    if (!message.is_object()) {
+      throw CliError(kProtocol, fmt::format("{} does not speak JSON-RPC: {:.60}", path_, *line),
+                     "regrasp doctor");
+    }
+    if (message.contains("method")) {
+      events_.push_back(message.value("params", Json::object()));
+      continue;
+    }
+    const Json answered = message.value("id", Json());
+    if (answered != id && !(answered.is_null() && message.contains("error"))) continue;
+    if (message.contains("error")) {
+      const Json& error = message["error"];
+      const int code = error.value("code", 0);
+      std::string hint;
+      if (error.contains("data") && error["data"].is_object()) hint = error["data"].value("hint", "");
+      throw CliError(ExitCodeFor(code), error.value("message", "refused without a reason"), hint, code);
+    }
+    if (!message.contains("result")) {
+      throw CliError(kProtocol, fmt::format("{} answered with neither result nor error", path_),
+                     "regrasp version");
+    }
+    return message["result"];
+  }
+}
+
+std::optional<Json> Client::NextEvent(double timeout_s) {
+  const auto deadline = Deadline(timeout_s);
+  while (events_.empty()) {
+    const auto line = ReadLine(deadline);
+    if (!line) return std::nullopt;
+    Json message = Json::parse(*line, nullptr, false);
+    if (!message.is_object()) {
+      throw CliError(kProtocol, fmt::format("{} does not speak JSON-RPC: {:.60}", path_, *line));
+    }
+    if (message.contains("method")) events_.push_back(message.value("params", Json::object()));
+  }
+  Json event = std::move(events_.front());
+  events_.pop_front();
+  return event;
+}
+
+bool Listening(const std::string& path) {
+  try {
+    Client client(path, 1.0);
+    return true;
+  } catch (const CliError&) {
+    return false;
+  }
+}
+
+}  // namespace regrasp::cli

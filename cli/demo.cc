@@ -1,0 +1,2 @@
+#include "cli/demo.h"
+namespace regrasp::cli { ExitCode Demo(Context&, const Invocation&) { return kOk; } }

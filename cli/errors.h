@@ -1,0 +1,32 @@
+#pragma once
+
+/// How the command line fails: every error is a CliError, printed in one place (main.cc).
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/protocol/errors.h"
+
+namespace regrasp::cli {
+
+using enum ExitCode;
+
+/// An error with its exit code. `what()` is one line: cause, path or value. `hint` is the next command to
+/// try, or empty.
+class CliError : public std::runtime_error {
+ public:
+  CliError(ExitCode exit_code, const std::string& cause, std::string next = "", int rpc = 0)
+      : std::runtime_error(cause), code(exit_code), hint(std::move(next)), rpc_code(rpc) {}
+  ExitCode code;
+  std::string hint;
+  int rpc_code;  ///< JSON-RPC error code when the daemon refused, else 0
+};
+
+/// Writes `error` to stderr: two lines of text, or with `json` one object {"error": {…}}.
+void PrintError(const CliError& error, bool json, bool color);
+
+/// `text` as a JSON string literal, quotes included. Invalid UTF-8 bytes become U+FFFD.
+std::string JsonQuote(const std::string& text);
+
+}  // namespace regrasp::cli

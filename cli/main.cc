@@ -1,0 +1,39 @@
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "cli/context.h"
+
+namespace {
+
+int Run(int argc, char** argv) {
+  using namespace regrasp;
+  using namespace regrasp::cli;
+  const bool error_color = ::isatty(STDERR_FILENO) == 1 && std::getenv("NO_COLOR") == nullptr;
+  const auto fail = [&](const CliError& error) {
+    PrintError(error, WantsJson(argc, argv), error_color);
+    return static_cast<int>(error.code);
+  };
+  try {
+    GlobalOptions options;
+    const Invocation invocation = Parse(argc, argv, &options);
+    Context context(options);
+    ExitCode code = kOk;
+    try {
+      code = invocation.command->run(context, invocation);
+    } catch (...) {
+      context.out().Flush();  // what was answered before the failure
+      throw;
+    }
+    context.out().Flush();
+    return static_cast<int>(code);
+  } catch (const CliError& error) {
+    return fail(error);
+  } catch (const std::exception& error) {
+    return fail(CliError(kProtocol, std::string("unexpected answer: ") + error.what(), "regrasp doctor"));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return Run(argc, argv); }
