@@ -76,7 +76,10 @@ urdf::ModelInterfaceSharedPtr Parse(const std::filesystem::path& path, const Che
   }
   if (!model)
     check.Fail("not a valid URDF: {}", log.text().empty() ? "unknown reason" : log.text());
-  return model;
+  // Links own their children, so links in a ring would own each other for ever.
+  return {model.get(), [model](urdf::ModelInterface*) {
+            for (const auto& [name, link] : model->links_) link->clear();
+          }};
 }
 
 Isometry3d ToIsometry(const urdf::Pose& pose, const std::string& element, const Checker& check) {
