@@ -26,6 +26,8 @@ namespace {
 
 constexpr double kSpring = 3.0;  // [N m/rad]
 constexpr double kFilter = 0.1;  // dt / 10 ms
+constexpr double kCreep = 0.1;   // dt / 10 ms
+constexpr int kRelease = 500;    // tick at which the stand-in lets go
 constexpr int kSettle = 1500;    // ticks before anything is measured
 
 struct Options {
@@ -73,6 +75,8 @@ class Run {
     JointVector torque = GravityTorque(s_.hand, kinematics_, s_.scenario.gravity_W);
     for (int i = 0; i < noise_.size(); ++i)
       noise_[i] += kFilter * (options_.noise_deg / 57.29577951 * random_.Normal() - noise_[i]);
+    // The springs creep while the fingers close on an object of whatever size.
+    if (tick_ < kRelease) rest_ += kCreep * (now.q - rest_);
     torque += kSpring * (rest_ - now.q - noise_);
     for (int f = 0; f < s_.hand.num_fingers(); ++f) {
       const Vector3d p = FingertipCentre(s_.hand, kinematics_, f);
@@ -82,7 +86,7 @@ class Run {
         torque[s_.hand.fingers[f].joints[k]] += t[k];
     }
     world_.SetTorque(torque);
-    if (tick_ == kSettle / 3) world_.SetStandIn(false);
+    if (tick_ == kRelease) world_.SetStandIn(false);
     if (world_.Step() != StepStatus::kOk) return false;
     if (++tick_ > kSettle) Measure();
     return true;

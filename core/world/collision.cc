@@ -1,6 +1,7 @@
 #include "core/world/collision.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace regrasp {
 namespace {
@@ -22,12 +23,17 @@ void SetOffset(dGeomID geom, dBodyID body, const Isometry3d& X) {
   }
 }
 
-Vector3d MiddleNow(dBodyID body, const Vector3d& p_BM) {
-  const dReal* p = dBodyGetPosition(body);
+Matrix3d RotationOf(dBodyID body) {
   const dReal* R = dBodyGetRotation(body);
-  return {p[0] + R[0] * p_BM.x() + R[1] * p_BM.y() + R[2] * p_BM.z(),
-          p[1] + R[4] * p_BM.x() + R[5] * p_BM.y() + R[6] * p_BM.z(),
-          p[2] + R[8] * p_BM.x() + R[9] * p_BM.y() + R[10] * p_BM.z()};
+  Matrix3d M;
+  M << R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10];
+  return M;
+}
+
+// The point p_B of a body, in W.
+Vector3d PointNow(dBodyID body, const Vector3d& p_B) {
+  const dReal* p = dBodyGetPosition(body);
+  return Vector3d(p[0], p[1], p[2]) + RotationOf(body) * p_B;
 }
 
 // Distance of a point from a box, given in the box frame.
@@ -59,6 +65,7 @@ Collider::Collider(const HandModel& hand, const Articulation& articulation,
         const double length = along.norm();
         X_LS.translation() = 0.5 * (shape.a_L + shape.b_L);
         part.bound = shape.radius + 0.5 * length;
+        part.radius = shape.radius;
         if (length > 1e-9) {
           X_LS.linear() = RotationFromZ(along / length);
           part.geom = dCreateCapsule(nullptr, shape.radius, length);
@@ -76,7 +83,9 @@ Collider::Collider(const HandModel& hand, const Articulation& articulation,
       SetOffset(part.geom, part.body, X_BS);
       part.X_WS = X_BS;
       part.p_BM = X_BS.translation();
-      part.p_WM = part.body ? MiddleNow(part.body, part.p_BM) : part.p_BM;
+      part.p_BA = X_BL * shape.a_L;
+      part.p_BC = X_BL * shape.b_L;
+      part.p_WM = part.body ? PointNow(part.body, part.p_BM) : part.p_BM;
       parts_.push_back(part);
     }
   }
@@ -99,6 +108,7 @@ Collider::Collider(const HandModel& hand, const Articulation& articulation,
         mesh_vertices_.insert(mesh_vertices_.end(), {v.x(), v.y(), v.z()});
       for (const Eigen::Vector3i& t : object.triangles)
         for (int k = 0; k < 3; ++k) mesh_indices_.push_back(static_cast<dTriIndex>(t[k]));
+      surface_.emplace(object.vertices_O, object.triangles);
       mesh_ = dGeomTriMeshDataCreate();
       dGeomTriMeshDataBuildDouble(mesh_, mesh_vertices_.data(), 3 * sizeof(double),
                                   static_cast<int>(object.vertices_O.size()), mesh_indices_.data(),
@@ -152,11 +162,47 @@ int Collider::Contacts(const Part& a, const Part& b, dContactGeom* out) {
   const int wanted = a.box && b.box ? kMaxPerPair : 1;
   dContactGeom found[8];
   const int n = dCollide(a.geom, b.geom, 8, found, sizeof(dContactGeom));
-  std::stable_sort(found, found + n,
-                   [](const dContactGeom& x, const dContactGeom& y) { return x.depth > y.depth; });
   const int kept = std::min(n, wanted);
-  std::copy(found, found + kept, out);
+  for (int k = 0; k < kept; ++k) {
+    dContactGeom* deepest = std::max_element(
+        found + k, found + n,
+        [](const dContactGeom& x, const dContactGeom& y) { return x.depth < y.depth; });
+    std::swap(found[k], *deepest);
+    out[k] = found[k];
+  }
   return kept;
+}
+
+int Collider::ObjectContacts(const Part& part, dContactGeom* out) const {
+  return surface_ && !part.box ? MeshContact(part, out) : Contacts(object_, part, out);
+}
+
+int Collider::MeshContact(const Part& part, dContactGeom* out) const {
+  const Matrix3d R_WO = RotationOf(object_.body);
+  const auto in_object = [&](const Vector3d& p_B) -> Vector3d {
+    const Vector3d p_W = part.body ? PointNow(part.body, p_B) : p_B;
+    return R_WO.transpose() * (p_W - object_.p_WM);
+  };
+  const std::optional<SurfaceMesh::Closest> closest =
+      surface_->ClosestToSegment(in_object(part.p_BA), in_object(part.p_BC), part.radius);
+  if (!closest) return 0;
+  // The normal runs from the surface to the capsule's core; where the core has gone under the
+  // surface the two change places.
+  const Vector3d gap = closest->p_OSegment - closest->p_OSurface;
+  const bool inside = gap.dot(closest->face_normal_O) < 0;
+  const double distance = inside ? -closest->distance : closest->distance;
+  const Vector3d normal_O =
+      closest->distance > 1e-9 ? Vector3d(gap / distance) : closest->face_normal_O;
+  const double depth = part.radius - distance;
+  const Vector3d p_W = R_WO * (closest->p_OSurface - 0.5 * depth * normal_O) + object_.p_WM;
+  const Vector3d normal_W = R_WO * normal_O;
+  *out = dContactGeom{};
+  for (int k = 0; k < 3; ++k) {
+    out->pos[k] = p_W[k];
+    out->normal[k] = -normal_W[k];
+  }
+  out->depth = depth;
+  return 1;
 }
 
 void Collider::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
@@ -164,12 +210,12 @@ void Collider::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
   object_hits->clear();
   link_hits->clear();
   for (Part& part : parts_)
-    if (part.body) part.p_WM = MiddleNow(part.body, part.p_BM);
-  object_.p_WM = MiddleNow(object_.body, Vector3d::Zero());
+    if (part.body) part.p_WM = PointNow(part.body, part.p_BM);
+  object_.p_WM = PointNow(object_.body, Vector3d::Zero());
   dContactGeom found[kMaxPerPair];
   for (const Part& part : parts_) {
     if (!MayTouch(part, object_)) continue;
-    const int n = Contacts(object_, part, found);
+    const int n = ObjectContacts(part, found);
     for (int k = 0; k < n; ++k) object_hits->push_back({part.link, part.body, found[k]});
   }
   for (const Pair& pair : pairs_) {

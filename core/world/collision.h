@@ -6,6 +6,7 @@
 
 #include <ode/ode.h>
 
+#include <optional>
 #include <vector>
 
 #include "core/common/fixed_vector.h"
@@ -13,6 +14,7 @@
 #include "core/hand/hand_model.h"
 #include "core/hand/object_model.h"
 #include "core/world/articulation.h"
+#include "core/world/surface_mesh.h"
 
 namespace regrasp {
 
@@ -59,7 +61,10 @@ class Collider {
     int link = -1;
     bool box = false;
     Vector3d p_BM = Vector3d::Zero();  // middle of the bounding sphere in the body (static: in W)
-    double bound = 0;                  // its radius [m]
+    Vector3d p_BA = Vector3d::Zero(),
+             p_BC = Vector3d::Zero();          // capsule: ends of the segment, as p_BM
+    double radius = 0;                         // capsule [m]
+    double bound = 0;                          // its radius [m]
     Isometry3d X_WS = Isometry3d::Identity();  // static box
     Vector3d half = Vector3d::Zero();
     Vector3d p_WM = Vector3d::Zero();  // this step
@@ -69,12 +74,15 @@ class Collider {
   };
 
   bool MayTouch(const Part& a, const Part& b) const;
+  int ObjectContacts(const Part& part, dContactGeom* out) const;
+  int MeshContact(const Part& part, dContactGeom* out) const;
   static int Contacts(const Part& a, const Part& b, dContactGeom* out);
 
   std::vector<Part> parts_;
   std::vector<Pair> pairs_;
   Part object_;
-  dTriMeshDataID mesh_ = nullptr;
+  std::optional<SurfaceMesh> surface_;  // mesh object, against capsules
+  dTriMeshDataID mesh_ = nullptr;       // mesh object, against boxes
   std::vector<double> mesh_vertices_;
   std::vector<dTriIndex> mesh_indices_;
 };

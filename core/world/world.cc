@@ -199,6 +199,7 @@ void World::Impl::BuildObject(const Isometry3d& X_WO0) {
 }
 
 void World::Impl::CheckInputs() const {
+  if (torque.size() != hand.num_joints()) throw OdeError("wrong number of joint torques");
   if (!torque.allFinite()) throw OdeError("joint torque is not finite");
   if (!push_W.allFinite()) throw OdeError("push force is not finite");
   if (!gravity_W.allFinite()) throw OdeError("gravity is not finite");

@@ -1,0 +1,53 @@
+#pragma once
+
+/// Closest point of a closed triangle mesh to a segment, for contacts of rounded links (capsules)
+/// with a mesh object. ODE's own capsule-trimesh collider returned normals up to 18 degrees off on
+/// a fine sphere and took 45 us; the exact closest point gives a normal that turns continuously as
+/// the link moves.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/common/frames.h"
+
+namespace regrasp {
+
+class SurfaceMesh {
+ public:
+  /// Vertices in O [m]; triangles counter-clockwise seen from outside. At least one triangle.
+  SurfaceMesh(const std::vector<Vector3d>& vertices_O,
+              const std::vector<Eigen::Vector3i>& triangles);
+
+  struct Closest {
+    Vector3d p_OSegment = Vector3d::Zero();      ///< closest point of the segment [m]
+    Vector3d p_OSurface = Vector3d::Zero();      ///< closest point of the surface [m]
+    Vector3d face_normal_O = Vector3d::UnitZ();  ///< outward normal of the triangle it lies on
+    double distance = 0;                         ///< between the two [m]
+  };
+  /// The closest pair of points of the surface and the segment a-b (a == b: a point), if nearer
+  /// than `max_distance`. Exact and deterministic. Allocates nothing.
+  std::optional<Closest> ClosestToSegment(const Vector3d& a_O, const Vector3d& b_O,
+                                          double max_distance) const;
+
+ private:
+  struct Triangle {
+    Vector3d v[3];
+    Vector3d normal;
+    bool owns_edge[3] = {};
+  };
+  // A node of a tree of bounding spheres. A leaf holds triangles [first, first + count); an inner
+  // node (count == 0) has its children at `first` and `first + 1`.
+  struct Node {
+    Vector3d centre = Vector3d::Zero();
+    double radius = 0;
+    int first = 0;
+    int count = 0;
+  };
+  void Build(int node, int begin, int end);
+
+  std::vector<Triangle> triangles_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace regrasp

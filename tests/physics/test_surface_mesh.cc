@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/common/random.h"
+#include "core/world/surface_mesh.h"
+
+namespace regrasp {
+namespace {
+
+// A unit cube about the origin, as 12 triangles: exact distances are easy.
+const std::vector<Vector3d> kCorners = {{-.5, -.5, -.5}, {.5, -.5, -.5}, {.5, .5, -.5},
+                                        {-.5, .5, -.5},  {-.5, -.5, .5}, {.5, -.5, .5},
+                                        {.5, .5, .5},    {-.5, .5, .5}};
+const std::vector<Eigen::Vector3i> kFaces = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7},
+                                             {0, 1, 5}, {0, 5, 4}, {3, 7, 6}, {3, 6, 2},
+                                             {0, 4, 7}, {0, 7, 3}, {1, 2, 6}, {1, 6, 5}};
+
+double DistanceToCube(const Vector3d& p) {
+  return (p.cwiseAbs() - Vector3d::Constant(0.5)).cwiseMax(0.0).norm();
+}
+
+TEST(SurfaceMesh, PointDistanceIsTheBoxDistance) {
+  const SurfaceMesh mesh(kCorners, kFaces);
+  RandomStream random(1, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3d p = random.Normal3();
+    if (p.cwiseAbs().maxCoeff() < 0.5) continue;  // outside only
+    const auto closest = mesh.ClosestToSegment(p, p, 10);
+    ASSERT_TRUE(closest);
+    EXPECT_NEAR(closest->distance, DistanceToCube(p), 1e-12);
+    EXPECT_NEAR((closest->p_OSurface - p).norm(), closest->distance, 1e-12);
+    EXPECT_NEAR(closest->p_OSurface.cwiseAbs().maxCoeff(), 0.5, 1e-12) << "lies on the surface";
+  }
+}
+
+TEST(SurfaceMesh, SegmentDistanceIsTheLeastOverItsPoints) {
+  const SurfaceMesh mesh(kCorners, kFaces);
+  RandomStream random(2, 0);
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d a = 1.2 * random.Normal3(), b = a + random.Normal3();
+    double least = 1e9;
+    const int n = 2000;
+    for (int k = 0; k <= n; ++k)
+      least = std::min(least, DistanceToCube(a + (b - a) * (double(k) / n)));
+    if (least < 1e-2) continue;  // touching or piercing: below
+    const auto closest = mesh.ClosestToSegment(a, b, 10);
+    ASSERT_TRUE(closest);
+    // Sampling overestimates by at most half a sample spacing.
+    EXPECT_LE(closest->distance, least + 1e-12);
+    EXPECT_GT(closest->distance, least - (b - a).norm() / n);
+  }
+}
+
+TEST(SurfaceMesh, PiercingSegmentHasNoDistance) {
+  const SurfaceMesh mesh(kCorners, kFaces);
+  const auto closest = mesh.ClosestToSegment({0.1, 0.2, 2}, {0.1, 0.2, 0}, 10);
+  ASSERT_TRUE(closest);
+  EXPECT_NEAR(closest->distance, 0, 1e-12);
+  EXPECT_NEAR(closest->p_OSurface.z(), 0.5, 1e-12);
+  EXPECT_NEAR(closest->face_normal_O.z(), 1, 1e-12);
+}
+
+TEST(SurfaceMesh, FartherThanAskedIsNothing) {
+  const SurfaceMesh mesh(kCorners, kFaces);
+  EXPECT_FALSE(mesh.ClosestToSegment({0, 0, 1}, {0, 0, 2}, 0.499));
+  EXPECT_TRUE(mesh.ClosestToSegment({0, 0, 1}, {0, 0, 2}, 0.501));
+}
+
+}  // namespace
+}  // namespace regrasp
