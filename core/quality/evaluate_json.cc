@@ -1,0 +1,151 @@
+#include "core/quality/evaluate_json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "core/quality/evaluate.h"
+
+namespace regrasp {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kMaxDepth = 32;
+
+[[noreturn]] void Fail(const std::string& message) { throw std::invalid_argument(message); }
+
+/// Number of insertions, deletions and replacements between two words [Levenshtein 1966].
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+/// Parses strictly: no duplicate names, bounded depth, finite numbers (the parser refuses
+/// overflow).
+Json Parse(const std::string& text) {
+  std::vector<std::set<std::string>> names;
+  const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    using Event = Json::parse_event_t;
+    if ((event == Event::object_start || event == Event::array_start) && depth >= kMaxDepth)
+      Fail("nested deeper than " + std::to_string(kMaxDepth) + " levels");
+    if (event == Event::object_start) names.emplace_back();
+    if (event == Event::object_end) names.pop_back();
+    if (event == Event::key && !names.back().insert(parsed.get<std::string>()).second)
+      Fail(parsed.get<std::string>() + ": given twice");
+    return true;
+  };
+  try {
+    return Json::parse(text, check);
+  } catch (const Json::exception& error) {
+    std::string message = error.what();
+    if (const auto end = message.find("] "); end != std::string::npos) message.erase(0, end + 2);
+    Fail(message);
+  }
+}
+
+std::string Quoted(const Json& value) {
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+void RequireObject(const Json& value, const std::string& path, const std::string& prefix,
+                   std::initializer_list<const char*> known) {
+  if (!value.is_object()) Fail(path + ": " + Quoted(value) + "; allowed: an object");
+  for (const auto& item : value.items()) {
+    const auto matches = [&](const char* name) { return item.key() == name; };
+    if (std::any_of(known.begin(), known.end(), matches)) continue;
+    const char* nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) {
+      return EditDistance(item.key().substr(0, 64), a) < EditDistance(item.key().substr(0, 64), b);
+    });
+    Fail(prefix + item.key().substr(0, 64) + ": unknown name; nearest: " + nearest);
+  }
+}
+
+const Json& Member(const Json& object, const std::string& prefix, const char* name) {
+  const auto found = object.find(name);
+  if (found == object.end()) Fail(prefix + name + ": missing");
+  return *found;
+}
+
+double ToNumber(const Json& value, const std::string& path) {
+  if (!value.is_number()) Fail(path + ": " + Quoted(value) + "; allowed: a number");
+  return value.get<double>();
+}
+
+Vector3d ToVector(const Json& value, const std::string& path) {
+  if (!value.is_array() || value.size() != 3)
+    Fail(path + ": " + Quoted(value) + "; allowed: an array of 3 numbers");
+  Vector3d v;
+  for (int k = 0; k < 3; ++k) v(k) = ToNumber(value[k], path + "[" + std::to_string(k) + "]");
+  return v;
+}
+
+EvaluateInput ToInput(const Json& file) {
+  RequireObject(file, "the file", "",
+                {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n"});
+  EvaluateInput input;
+  const Json& contacts = Member(file, "", "contacts");
+  if (!contacts.is_array())
+    Fail("contacts: " + Quoted(contacts) + "; allowed: an array of objects");
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::string path = "contacts[" + std::to_string(i) + "]";
+    const std::string prefix = path + ".";
+    RequireObject(contacts[i], path, prefix, {"position_m", "normal", "mu"});
+    input.contacts.push_back(
+        {ToVector(Member(contacts[i], prefix, "position_m"), prefix + "position_m"),
+         ToVector(Member(contacts[i], prefix, "normal"), prefix + "normal"),
+         ToNumber(Member(contacts[i], prefix, "mu"), prefix + "mu")});
+  }
+  input.torque_scale = ToNumber(Member(file, "", "torque_scale_m"), "torque_scale_m");
+  if (const auto edges = file.find("cone_edges"); edges != file.end()) {
+    const double number = edges->is_number() ? edges->get<double>() : 0.5;
+    if (number != std::floor(number) || std::abs(number) > 1e6)
+      Fail("cone_edges: " + Quoted(*edges) + "; allowed: an integer, 3 ... 64");
+    input.cone_edges = static_cast<int>(number);
+  }
+  if (const auto weight = file.find("weight_n"); weight != file.end())
+    input.weight = ToVector(*weight, "weight_n");
+  if (const auto force = file.find("max_force_n"); force != file.end())
+    input.max_force = ToNumber(*force, "max_force_n");
+  return input;
+}
+
+}  // namespace
+
+std::string EvaluateJson(const std::string& text) {
+  const EvaluateOutput measures = Evaluate(ToInput(Parse(text)));
+  nlohmann::ordered_json out;
+  out["epsilon"] = measures.epsilon;
+  out["volume"] = measures.volume;
+  out["min_singular_value"] = measures.min_singular_value;
+  out["sqrt_det"] = measures.sqrt_det;
+  out["isotropy"] = measures.isotropy;
+  out["force_closure"] = measures.force_closure;
+  if (measures.load_margin) {
+    const bool bounded = std::isfinite(*measures.load_margin);
+    out["load_margin_n"] = nullptr;
+    if (bounded) out["load_margin_n"] = *measures.load_margin;
+    out["load_margin_unbounded"] = !bounded;
+  }
+  return out.dump();
+}
+
+}  // namespace regrasp

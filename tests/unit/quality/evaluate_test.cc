@@ -1,0 +1,200 @@
+#include "core/quality/evaluate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/quality/epsilon.h"
+#include "core/quality/evaluate_json.h"
+#include "core/quality/load_margin.h"
+#include "core/quality/stability.h"
+#include "tests/unit/quality/grasps.h"
+
+namespace regrasp {
+namespace {
+
+using namespace test;
+using nlohmann::json;
+
+json File(const Contacts& contacts) {
+  json file = {{"torque_scale_m", 0.025}, {"cone_edges", 8}, {"contacts", json::array()}};
+  for (const GraspContact& c : contacts)
+    file["contacts"].push_back(
+        {{"position_m", {c.position.x(), c.position.y(), c.position.z()}},
+         {"normal", {c.inward_normal.x(), c.inward_normal.y(), c.inward_normal.z()}},
+         {"mu", c.mu}});
+  return file;
+}
+
+TEST(EvaluateJson, GivesEveryMeasureOfTheLibrary) {
+  const Contacts contacts = Tetrahedron(0.025, 0.5);
+  json file = File(contacts);
+  file["weight_n"] = {0, 0, -0.785};
+  file["max_force_n"] = 4;
+  const json out = json::parse(EvaluateJson(file.dump()));
+  // Numbers pass through text in both directions without loss; normals are normalised once more.
+  EXPECT_NEAR(out["epsilon"], EpsilonSolver().Compute(contacts, 0.025, 8), 1e-14);
+  EXPECT_NEAR(out["volume"], WrenchHullVolume(contacts, 0.025, 8), 1e-12);
+  EXPECT_NEAR(out["min_singular_value"], std::sqrt(8.0 / 3), 1e-12);
+  EXPECT_NEAR(out["isotropy"], std::sqrt(2.0 / 3), 1e-12);
+  EXPECT_NEAR(out["sqrt_det"], std::pow(32.0 / 3, 1.5), 1e-10);
+  EXPECT_EQ(out["force_closure"], true);
+  EXPECT_NEAR(out["load_margin_n"], LoadMargin(contacts, {0, 0, -0.785}, 0.025, 4.0), 1e-12);
+  EXPECT_EQ(out["load_margin_unbounded"], false);
+}
+
+TEST(EvaluateJson, LeavesTheLoadMarginOutWithoutAWeight) {
+  const json out = json::parse(EvaluateJson(File(Tetrahedron(0.025, 0.5)).dump()));
+  EXPECT_FALSE(out.contains("load_margin_n"));
+  EXPECT_EQ(out.size(), 6u);
+}
+
+TEST(EvaluateJson, SaysThatAnUnboundedMarginIsUnbounded) {
+  json file = File(Tetrahedron(0.025, 0.5));
+  file["weight_n"] = {0, 0, -0.785};
+  const json out = json::parse(EvaluateJson(file.dump()));
+  EXPECT_TRUE(out["load_margin_n"].is_null());
+  EXPECT_EQ(out["load_margin_unbounded"], true);
+}
+
+TEST(EvaluateJson, OfASingleContactIsZero) {
+  json file = File(Ring(1, 0.025, 0.8));
+  file["weight_n"] = {0, 0, -0.785};
+  const json out = json::parse(EvaluateJson(file.dump()));
+  for (const char* name :
+       {"epsilon", "volume", "min_singular_value", "sqrt_det", "isotropy", "load_margin_n"})
+    EXPECT_EQ(out[name], 0.0) << name;
+  EXPECT_EQ(out["force_closure"], false);
+}
+
+TEST(EvaluateJson, NormalisesNormalsThatAreNearlyUnit) {
+  json file = File(Tetrahedron(0.025, 0.5));
+  const json exact = json::parse(EvaluateJson(file.dump()));
+  for (auto& contact : file["contacts"])
+    for (auto& x : contact["normal"])
+      x = std::round(x.get<double>() * 1e4) / 1e4;  // as people write them
+  const json rounded = json::parse(EvaluateJson(file.dump()));
+  EXPECT_NEAR(rounded["epsilon"], exact["epsilon"], 1e-12);  // all components round alike
+}
+
+TEST(EvaluateJson, TakesEightEdgesWhenNoneAreGiven) {
+  json file = File(Tetrahedron(0.025, 0.5));
+  const std::string eight = EvaluateJson(file.dump());
+  file.erase("cone_edges");
+  EXPECT_EQ(EvaluateJson(file.dump()), eight);
+}
+
+struct Bad {
+  const char* pointer;  // what is replaced in a good file ...
+  const char* value;    // ... by this; "" removes it
+  const char* message;  // a part of the message
+};
+
+TEST(EvaluateJson, NamesFieldAndValueOfBadFiles) {
+  const Bad table[] = {
+      {"/contacts", "[]", "contacts: none"},
+      {"/contacts", "3", "contacts: 3; allowed: an array"},
+      {"/contacts", "", "contacts: missing"},
+      {"/contacts/1", "7", "contacts[1]: 7; allowed: an object"},
+      {"/contacts/1/mu", "", "contacts[1].mu: missing"},
+      {"/contacts/1/mu", "-0.5", "contacts[1].mu: -0.5; allowed: 0 ... 10"},
+      {"/contacts/1/mu", "11", "contacts[1].mu: 11; allowed"},
+      {"/contacts/1/mu", "\"high\"", "contacts[1].mu: \"high\"; allowed: a number"},
+      {"/contacts/1/mu", "true", "contacts[1].mu: true; allowed: a number"},
+      {"/contacts/1/friction", "1", "contacts[1].friction: unknown name; nearest: "},
+      {"/contacts/1/position", "[0,0,0]",
+       "contacts[1].position: unknown name; nearest: position_m"},
+      {"/contacts/1/normal", "[0,0]", "contacts[1].normal: [0,0]; allowed: an array of 3 numbers"},
+      {"/contacts/1/normal", "[0,0,0]", "contacts[1].normal: length 0; allowed: a unit vector"},
+      {"/contacts/1/normal", "[0,0.7,0.7]", "contacts[1].normal: length 0.989949494"},
+      {"/contacts/1/normal", "[0,0,2]", "contacts[1].normal[2]: 2"},
+      {"/contacts/1/normal", "[0,null,1]", "contacts[1].normal[1]: null"},
+      {"/contacts/1/position_m", "[0,25,0]", "contacts[1].position_m[1]: 25; allowed: -10 ... 10"},
+      {"/torque_scale_m", "", "torque_scale_m: missing"},
+      {"/torque_scale_m", "0", "torque_scale_m: 0; allowed"},
+      {"/torque_scale_m", "-1", "torque_scale_m: -1; allowed"},
+      {"/torque_scal_m", "1", "torque_scal_m: unknown name; nearest: torque_scale_m"},
+      {"/cone_edges", "2", "cone_edges: 2; allowed: 3 ... 64"},
+      {"/cone_edges", "65", "cone_edges: 65; allowed"},
+      {"/cone_edges", "8.5", "cone_edges: 8.5; allowed: an integer"},
+      {"/cone_edges", "\"8\"", "cone_edges: \"8\"; allowed: an integer"},
+      {"/weight_n", "-0.785", "weight_n: -0.785; allowed: an array of 3 numbers"},
+      {"/weight_n", "[0,0,1e300]", "weight_n[2]: 1e+300; allowed"},
+      {"/max_force_n", "0", "max_force_n: 0; allowed: above 0"},
+  };
+  for (const Bad& bad : table) {
+    json file = File(Tetrahedron(0.025, 0.5));
+    const json::json_pointer pointer(bad.pointer);
+    if (*bad.value) {
+      file[pointer] = json::parse(bad.value);
+    } else {
+      file[pointer.parent_pointer()].erase(pointer.back());
+    }
+    try {
+      EvaluateJson(file.dump());
+      ADD_FAILURE() << "accepted " << bad.pointer << " = " << bad.value;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(bad.message), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+  }
+}
+
+TEST(EvaluateJson, RefusesTextThatIsNotStrictJson) {
+  const std::pair<std::string, const char*> table[] = {
+      {"", "line 1, column 1"},
+      {"{", "line 1, column 2"},
+      {"[]", "the file: []; allowed: an object"},
+      {"{} {}", "line 1, column 4"},
+      {R"({"torque_scale_m": NaN})", "line 1"},
+      {R"({"torque_scale_m": 1e999})", "1e999"},
+      {R"({"torque_scale_m": -1e999})", "1e999"},
+      {R"({"torque_scale_m": 1, "torque_scale_m": 1})", "torque_scale_m: given twice"},
+      {R"({"contacts": [{"mu": 1, "mu": 1}]})", "mu: given twice"},
+      {std::string(33, '[') + std::string(33, ']'), "nested deeper than 32 levels"},
+      {std::string(1'000'000, '['), "nested deeper than 32 levels"},
+      {"{\"a\xff\": 1}", "UTF-8"},
+      {"// none\n{}", "line 1"},
+  };
+  for (const auto& [text, message] : table) {
+    try {
+      EvaluateJson(text);
+      ADD_FAILURE() << "accepted " << text.substr(0, 60);
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(Evaluate, RefusesNumbersThatAreNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EvaluateInput good;
+  good.contacts = Tetrahedron(0.025, 0.5);
+  good.torque_scale = 0.025;
+  good.weight = Vector3d(0, 0, -1);
+  EXPECT_NO_THROW(Evaluate(good));
+  for (int field = 0; field < 6; ++field) {
+    EvaluateInput bad = good;
+    if (field == 0) bad.contacts[1].position.x() = nan;
+    if (field == 1) bad.contacts[1].inward_normal.y() = nan;
+    if (field == 2) bad.contacts[1].mu = nan;
+    if (field == 3) bad.torque_scale = nan;
+    if (field == 4) bad.weight->z() = nan;
+    if (field == 5) bad.max_force = nan;
+    EXPECT_THROW(Evaluate(bad), std::invalid_argument) << field;
+  }
+}
+
+TEST(Evaluate, RefusesAHullThatWouldNotFit) {
+  EvaluateInput input;
+  input.contacts = Ring(7, 0.025, 0.5);
+  input.torque_scale = 0.025;
+  input.cone_edges = 64;
+  EXPECT_THROW(Evaluate(input), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace regrasp
