@@ -140,10 +140,9 @@ std::vector<CommandSpec> ControlCommands() {
   CommandSpec param_get = MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
   param_get.args.front().required = true;
   param_get.sentence = "value, unit, range and source of a parameter";
-  return {
+  std::vector<CommandSpec> commands = {
       MethodCommand("grasp", kGroup, StartJob),
       MethodCommand("release", kGroup, StartJob),
-      MethodCommand("rotate", kGroup, Rotate),
       MethodCommand("explore", kGroup, StartJob, {.positional = {"finger"}}),
       MethodCommand("stop", kGroup, Stop),
       MethodCommand("pause", kGroup, PauseOrResume),
@@ -162,6 +161,9 @@ std::vector<CommandSpec> ControlCommands() {
       param_get,
       MethodCommand("param.set", kGroup, ParamGetOrSet, {.positional = {"name", "value"}}),
   };
+  // Offered when the wire has it.
+  if (FindMethod("rotate") != nullptr) commands.insert(commands.begin() + 2, MethodCommand("rotate", kGroup, Rotate));
+  return commands;
 }
 
 }  // namespace regrasp::cli

@@ -111,11 +111,11 @@ void PrintQuality(Output& out, const Json& q) {
   const Json& stability = At(q, "stability");
   const Json& threshold = At(q, "threshold");
   const bool low = stability.is_number() && threshold.is_number() && stability.get<double>() < threshold.get<double>();
-  out.Line(fmt::format("{:<22}{}  (threshold {})", "stability", out.Paint(Fixed(stability, 3), low ? Style::kWarn : Style::kGood), Fixed(threshold, 3)));
+  out.Line(fmt::format("{:<22}{}  (threshold {})", "stability", out.Paint(Fixed(stability, 4), low ? Style::kWarn : Style::kGood), Fixed(threshold, 4)));
   out.Line(fmt::format("{:<22}{}", "active criterion", Plain(At(q, "criterion"))));
   out.Line(fmt::format("load margin {}{}{} N", out.Rho(), std::string(static_cast<std::size_t>(10 - DisplayWidth(out.Rho())), ' '), Fixed(At(q, "load_margin_n"), 3)));
-  for (const auto& [name, value] : Named(At(q, "measures"), "name")) {
-    out.Line(fmt::format("{:<22}{}", name, value.is_number() ? Fixed(value, 4) : Plain(value)));
+  for (const char* name : {"min_singular_value", "epsilon", "sqrt_det", "isotropy", "volume"}) {
+    if (At(q, name).is_number()) out.Line(fmt::format("{:<22}{:.4g}", name, At(q, name).get<double>()));
   }
   out.Line();
   const auto fingers = Named(At(q, "fingers"), "finger");
@@ -175,7 +175,7 @@ ExitCode JobList(Context& context, const Invocation& invocation) {
       std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
       if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
       if (At(job, "angle_rad").is_number()) result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
-      const auto tick = [&](const char* key) { return job.value(key, -1) < 0 ? std::string(out.Dash()) : Plain(At(job, key)); };
+      const auto tick = [&](const char* key) { return At(job, key).is_number() ? Plain(At(job, key)) : std::string(out.Dash()); };
       const bool finger = At(job, "finger").is_string();
       table.Row({Plain(At(job, "id")), Plain(At(job, "method")) + (finger ? " " + Plain(At(job, "finger")) : ""), Plain(At(job, "state")),
                  Fixed(At(job, "progress"), 0, 100) + " %", tick("start_tick"), tick("end_tick"), result});
@@ -279,6 +279,10 @@ ExitCode Events(Context& context, const Invocation& invocation) {
 std::vector<CommandSpec> InspectCommands() {
   const Arg follow = {.key = "follow", .flags = "-f,--follow", .metavar = "", .kind = ArgKind::kFlag, .help = "print new events as they come, until interrupted"};
   const Arg count = {.key = "count", .flags = "--count", .metavar = "N", .kind = ArgKind::kText, .help = "end after so many samples", .default_text = "until interrupted"};
+  CommandSpec wait = MethodCommand("job.wait", kGroup, JobWait, {.positional = {"id"}, .hidden = {"timeout_s"}});
+  wait.sentence = "wait until a job has ended, print its record";
+  CommandSpec watch = MethodCommand("subscribe", kGroup, Watch, {.positional = {"topic"}, .extra = {count}});
+  watch.sentence = "print a topic again and again";
   return {
       MethodCommand("status", kGroup, Status),
       MethodCommand("contacts", kGroup, Contacts),
@@ -287,10 +291,10 @@ std::vector<CommandSpec> InspectCommands() {
       MethodCommand("truth", kGroup, Truth),
       MethodCommand("job.list", kGroup, JobList),
       MethodCommand("job.get", kGroup, JobShow, {.positional = {"id"}}),
-      MethodCommand("job.wait", kGroup, JobWait, {.positional = {"id"}, .hidden = {"timeout_s"}}),
+      wait,
       MethodCommand("job.cancel", kGroup, JobShow, {.positional = {"id"}}),
       MethodCommand("events", kGroup, Events, {.extra = {follow}}),
-      MethodCommand("subscribe", kGroup, Watch, {.positional = {"topic"}, .extra = {count}}),
+      watch,
   };
 }
 

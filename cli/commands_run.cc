@@ -88,6 +88,7 @@ std::vector<CommandSpec> RunCommands() {
       {"demo", kGroup, "grasp, explore, rotate, pictures, and the paper's claims against this run", nullptr,
        {{.key = "output", .flags = "-o,--output", .metavar = "DIR", .help = "where the pictures go", .default_text = "regrasp-demo"},
         {.key = "seed", .flags = "--seed", .metavar = "N", .kind = ArgKind::kInteger, .help = "seed of the runs", .min = 0, .max = kMaxSafeInteger, .default_text = "1"},
+        {.key = "repeats", .flags = "--repeats", .metavar = "N", .kind = ArgKind::kInteger, .help = "explorations of figure 2 with other start gradients (the paper: 50)", .min = 0, .max = 1000, .default_text = "10"},
         {.key = "models-dir", .flags = "--models-dir", .metavar = "DIR", .help = "where models are looked for first"}},
        Demo},
   };

@@ -7,11 +7,15 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
 
 #include "cli/context.h"
 #include "cli/daemon_process.h"
 #include "cli/help.h"
 #include "core/protocol/socket_path.h"
+#include "core/quality/evaluate_json.h"
 
 namespace regrasp::cli {
 namespace {
@@ -33,6 +37,32 @@ ExitCode Call(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
+ExitCode Evaluate(Context& context, const Invocation& invocation) {
+  const std::string name = invocation.Text("file");
+  const bool standard_input = name == "-";
+  std::error_code error;
+  if (!standard_input && !fs::exists(name, error)) {
+    throw CliError(kNotFound, fmt::format("no file {}", name), "regrasp help evaluate");
+  }
+  std::ifstream file;
+  if (!standard_input) file.open(name);
+  std::istream& in = standard_input ? std::cin : file;
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in.good() && !in.eof()) {
+    throw CliError(::access(name.c_str(), R_OK) == 0 ? kIo : kPermission, fmt::format("cannot read {}", name), "ls -l " + name);
+  }
+  Json answer;
+  try {
+    answer = Json::parse(EvaluateJson(text));
+  } catch (const std::invalid_argument& failure) {
+    throw CliError(kUsage, fmt::format("{}: {}", standard_input ? "standard input" : name, failure.what()), "regrasp help evaluate");
+  }
+  context.Print(answer, [&] {
+    for (const auto& [key, value] : answer.items()) context.out().Line(fmt::format("{:<22}{}", key, Plain(value)));
+  });
+  return kOk;
+}
+
 ExitCode Version(Context& context, const Invocation&) {
   Json answer = {{"version", REGRASP_VERSION}, {"protocol", kWireVersion}};
   if (context.options().verbose) answer["daemon"] = context.client().Call("version", Json::object());
@@ -44,10 +74,12 @@ ExitCode Version(Context& context, const Invocation&) {
 }
 
 ExitCode Help(Context& context, const Invocation& invocation) {
-  const std::string text = HelpText(invocation.Text("topic"), context.out());
+  std::string topic = invocation.Text("topic");
+  if (invocation.Has("word")) topic += " " + invocation.Text("word");
+  const std::string text = HelpText(topic, context.out());
   if (context.options().json) {
     Json commands = Json::array();
-    for (const auto* command : FindCommands(invocation.Text("topic"))) {
+    for (const auto* command : FindCommands(topic)) {
       Json args = Json::array();
       for (const auto& arg : command->args) {
         args.push_back({{"key", arg.key}, {"flags", arg.flags}, {"metavar", arg.metavar}, {"required", arg.required}, {"help", arg.help}});
@@ -144,6 +176,11 @@ ExitCode Doctor(Context& context, const Invocation&) {
 
 std::vector<CommandSpec> ToolCommands() {
   return {
+      {"evaluate", kGroup, "quality measures of a grasp given as JSON; needs no daemon", nullptr,
+       {{.key = "file", .flags = "", .metavar = "FILE",
+         .help = R"({"contacts": [{"position_m": [3], "normal": [3] inward, "mu": x}], "torque_scale_m": r, "cone_edges": m, "weight_n": [3]}; - reads standard input)",
+         .required = true}},
+       Evaluate},
       {"call", kGroup, "send any method of the wire and print its answer", nullptr,
        {{.key = "method", .flags = "", .metavar = "METHOD", .help = "for example describe", .required = true},
         {.key = "params", .flags = "", .metavar = "JSON", .help = "its parameters, an object"}},
@@ -154,7 +191,8 @@ std::vector<CommandSpec> ToolCommands() {
        Completion},
       {"version", kGroup, "version of this program; with -v also of the daemon", nullptr, {}, Version},
       {"help", kGroup, "this list, or help on a command", nullptr,
-       {{.key = "topic", .flags = "", .metavar = "COMMAND", .kind = ArgKind::kText, .help = "one or two words"}},
+       {{.key = "topic", .flags = "", .metavar = "COMMAND", .help = "a command"},
+        {.key = "word", .flags = "", .metavar = "WORD", .help = "its second word: help noise set"}},
        Help},
   };
 }

@@ -59,6 +59,7 @@ Arg FromParam(const ParamSpec& param, bool positional) {
       return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
     });
   }
+  if (!positional && !arg.values.empty()) arg.metavar = "NAME";
   if (arg.kind == ArgKind::kFlag) arg.metavar.clear();
   return arg;
 }

@@ -21,7 +21,7 @@ std::string Wrap(const std::string& text, std::size_t indent) {
   while (begin < text.size()) {
     const auto end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
-    const std::size_t used = static_cast<std::size_t>(DisplayWidth(line)) + (result.empty() ? 0 : 0);
+    const auto used = static_cast<std::size_t>(DisplayWidth(line));
     if (!line.empty() && used + 1 + word.size() > kWidth) {
       result += line + "\n";
       line = std::string(indent, ' ') + word;
@@ -53,7 +53,7 @@ std::string Usage(const CommandSpec& command) {
     if (arg.flags.empty()) text += arg.required ? " " + arg.metavar : " [" + arg.metavar + "]";
   }
   const bool options = std::any_of(command.args.begin(), command.args.end(), [](const Arg& a) { return !a.flags.empty(); });
-  return text + (options ? " [OPTION…]" : "");
+  return text + (options ? " [OPTION]..." : "");
 }
 
 std::string CommandHelp(const CommandSpec& command, const Output& out) {
@@ -67,7 +67,7 @@ std::string CommandHelp(const CommandSpec& command, const Output& out) {
 }
 
 std::string Overview(const Output& out) {
-  std::string text = out.Paint("regrasp", Style::kBold) + " [OPTION…] COMMAND    hold, explore and turn an object in a simulated hand\n";
+  std::string text = out.Paint("regrasp", Style::kBold) + " [OPTION]... COMMAND    hold, explore and turn an object in a simulated hand\n";
   std::string group;
   for (const auto& command : Commands()) {
     if (command.group != group) {

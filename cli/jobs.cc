@@ -96,13 +96,13 @@ void PrintJob(Output& out, const Json& record) {
   }
   out.Line(fmt::format("job {}: {} {}", Plain(At(record, "id")), out.Paint(JobTitle(record), Style::kBold),
                        out.Paint(verdict, !ended ? Style::kPlain : good ? Style::kGood : Style::kBad)));
-  if (const std::string error = record.value("error", ""); !error.empty()) out.Line("  error      " + error);
+  if (At(record, "error").is_string()) out.Line("  error      " + Plain(At(record, "error")));
   if (ended && record.value("method", "") == "explore" && state == "done") PrintExplore(out, record);
   if (ended && record.value("method", "") == "rotate" && At(record, "angle_rad").is_number()) PrintRotate(out, record);
-  const auto tick = [&](const char* key) { return record.value(key, std::int64_t{-1}); };
-  if (tick("start_tick") >= 0) {
-    out.Line(ended ? fmt::format("  ticks      {} to {}", tick("start_tick"), tick("end_tick"))
-                   : fmt::format("  ticks      from {}", tick("start_tick")));
+  if (At(record, "start_tick").is_number()) {
+    const std::string start = Plain(At(record, "start_tick"));
+    out.Line(ended ? fmt::format("  ticks      {} to {}", start, Plain(At(record, "end_tick")))
+                   : fmt::format("  ticks      from {}", start));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <deque>
+#include <set>
 
 #include "cli/errors.h"
 #include "cli/grammar.h"
@@ -59,7 +60,7 @@ void CheckRange(const Arg& arg, double typed) {
                                                         arg.min / arg.scale, arg.max / arg.scale, unit));
 }
 
-Json ToWire(const Arg& arg, const std::string& text) {
+Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
   const std::string name = ArgName(arg);
   switch (arg.kind) {
     case ArgKind::kFlag: return true;
@@ -69,7 +70,7 @@ Json ToWire(const Arg& arg, const std::string& text) {
       }
       const auto nearest = NearestName(text, arg.values);
       throw CliError(kUsage, fmt::format("{} '{}' is none of {}", name, text, fmt::join(arg.values, ", ")),
-                     nearest.empty() ? "" : fmt::format("{} {}", arg.flags.empty() ? "" : name, nearest));
+                     nearest.empty() ? "" : fmt::format("regrasp {}{} {}", scope, arg.flags.empty() ? "" : " " + name, nearest));
     }
     case ArgKind::kInteger: {
       const double typed = ParseNumber(text, name);
@@ -199,8 +200,11 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   app.add_option("--color", color);
   app.add_option("--timeout", timeout);
 
+  // Only commands whose first word is among the arguments: building all of them is half of the start-up.
+  const std::set<std::string_view> words_given(argv + std::min(argc, 1), argv + argc);
   std::map<std::string, Node> nodes;
   for (const auto& command : Commands()) {
+    if (!words_given.contains(std::string_view(command.words).substr(0, command.words.find(' ')))) continue;
     CLI::App* parent = &app;
     for (std::size_t end = 0; end != std::string::npos;) {
       const std::size_t begin = end == 0 ? 0 : end + 1;
@@ -268,26 +272,26 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   invocation.params = Json::object();
   try {
     if (json != 0 && json != 1) {
-      throw CliError(kUsage, fmt::format("--json={}: this version writes format 1", json), "--json=1");
+      throw CliError(kUsage, fmt::format("--json={}: this version writes format 1", json), "regrasp --json=1 " + scope);
     }
     options->json = json == 1;
     if (options->json && options->csv) throw CliError(kUsage, "--json and --csv exclude each other");
     if (options->quiet && options->verbose) throw CliError(kUsage, "-q and -v exclude each other");
     for (const auto& arg : GlobalArgs()) {
       if (arg.key == "color" && !color.empty()) {
-        const std::string mode = ToWire(arg, color);
+        const std::string mode = ToWire(arg, color, scope);
         options->color = mode == "always"  ? ColorMode::kAlways
                          : mode == "never" ? ColorMode::kNever
                                            : ColorMode::kAuto;
       }
-      if (arg.key == "timeout" && !timeout.empty()) options->timeout_s = ToWire(arg, timeout).get<double>();
+      if (arg.key == "timeout" && !timeout.empty()) options->timeout_s = ToWire(arg, timeout, scope).get<double>();
     }
     for (const auto& given : node.given) {
       const Arg& arg = *given.arg;
       const bool present = given.option->count() > 0;
       if (!present && arg.required) throw CliError(kUsage, fmt::format("{} is missing", ArgName(arg)));
       if (!present || (arg.kind == ArgKind::kFlag && !given.flag)) continue;
-      const Json value = ToWire(arg, given.text);
+      const Json value = ToWire(arg, given.text, scope);
       if (arg.wire) {
         invocation.params[arg.key] = value;
       } else {
