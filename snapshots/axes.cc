@@ -79,7 +79,7 @@ void DrawGrid(Canvas* canvas, const Panel& panel, bool x_values) {
 void DrawFrame(Canvas* canvas, const Panel& panel) {
   const Point2 a = panel.area.tl(), b = panel.area.br();
   const std::vector<Point2> corners = {a, {b.x, a.y}, b, {a.x, b.y}, a};
-  canvas->Polyline(corners, {kInk, 1.5});
+  canvas->Polyline(corners, {kInk, 1.2});
 }
 
 void DrawCurve(Canvas* canvas, const Panel& panel, std::span<const double> xs,

@@ -52,8 +52,8 @@ inline FingerLook LookOfFinger(int finger) {
       kBlue,   kGreen,   kVermillion,         kPurple,
       kOrange, kSkyBlue, Colour{120, 94, 20}, Colour{60, 60, 60}};
   const auto i = static_cast<std::size_t>(finger < 0 ? 0 : finger) % kMaxFingers;
-  static const std::array<std::vector<double>, 4> kDashes = {
-      std::vector<double>{}, {12, 5}, {3, 4}, {12, 4, 3, 4}};
+  static const std::array<std::vector<double>, 5> kDashes = {
+      std::vector<double>{}, {12, 5}, {3, 4}, {12, 4, 3, 4}, {20, 4}};
   return {kColours[i], static_cast<Marker>(i), kDashes[i % kDashes.size()]};
 }
 

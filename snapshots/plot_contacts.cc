@@ -163,9 +163,10 @@ void DrawCube(Canvas* canvas, const View& view, const Axis& axis) {
       p[k] = tick / kMm;
       const Point2 at = view.At(p);
       canvas->Line(at, at + out * 7, {kInk, 1.5});
-      canvas->Text(at + out * 24, axis.TickText(tick), {.size = 18, .align_x = AlignX::kCentre});
+      canvas->Text(at + out * (k == 2 ? 32 : 26), axis.TickText(tick),
+                   {.size = 18, .align_x = AlignX::kCentre});
     }
-    canvas->Text(middle + out * (k == 2 ? 66 : 64), kNames[k],
+    canvas->Text(middle + out * (k == 2 ? 74 : 78), kNames[k],
                  {.size = 20, .align_x = AlignX::kCentre, .upwards = k == 2});
   }
 }
@@ -202,12 +203,20 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
   const double side_width = 250, height = canvas.height();
   const double small = (height - 110 - 2 * 92) / 2;  // edge of a square panel
   const double right = canvas.width() - side_width;
-  const Box big(20, 100, right - small - 130 - 20, height - 110);
-  canvas.Clip({0, 0, right - small - 100, height});
-  // A cube of edge 1 seen from (1, -1.35, 0.75) is about 1.66 wide and 1.64 high.
-  const View view = MakeView({-0.85, -1.2, 0.72}, Vector3d::UnitZ(),
-                             {big.x + 0.53 * big.width, big.y + 0.46 * big.height},
-                             std::min(big.width - 150, big.height - 130) / (1.66 * 2 * half));
+  const Box big(20, 100, right - small - 110 - 20, height - 110);
+  canvas.Clip({0, 0, right - small - 90, height});
+  View view = MakeView({-0.85, -1.2, 0.72}, Vector3d::UnitZ(), {0, 0}, 1);
+  Range across, down;  // of the cube's corners, at 1 unit per mm
+  for (int i = 0; i < 8; ++i) {
+    const Point2 corner =
+        view.At(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) * half / kMm);
+    across.Add(corner.x);
+    down.Add(corner.y);
+  }
+  // Room for tick values and names: 90 on the left and below.
+  view.per_mm = std::min((big.width - 100) / (across.hi - across.lo),
+                         (big.height - 100) / (down.hi - down.lo));
+  view.centre = {big.x + 95 + (big.width - 100) / 2, big.y + 10 + (big.height - 100) / 2};
   DrawCube(&canvas, view, axis);
   DrawCloud(&canvas, view, cloud, mesh, lines, fit, 3.0);
   canvas.Unclip();

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <numbers>
 
 #include "snapshots/axes.h"
@@ -40,6 +42,36 @@ BandLook LookOfActivity(int finger, int value) {
   return {"", kWhite};
 }
 
+/// Value of the gait strip: the finger that regrasps, kTurning while the object is turned, -1
+/// without a gait.
+constexpr int kTurning = 100;
+
+int GaitStateOf(const Frame& frame) {
+  if (!frame.gait.active) return -1;
+  return frame.gait.finger >= 0 ? frame.gait.finger : kTurning;
+}
+
+/// The paper's name of the state in which a finger regrasps: S_T thumb, S_F first, ...
+BandLook LookOfGaitState(const HandModel& hand, int value) {
+  if (value == kTurning) return {"turn", Tint(kInk, 0.9)};
+  const std::string name = FingerName(hand, value);
+  const char initial = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+  return {fmt::format("S_{}", initial), Tint(LookOfFinger(value).colour, 0.42)};
+}
+
+bool AnyValue(std::span<const double> values) {
+  return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+Axis AxisOver(std::initializer_list<std::span<const double>> columns, bool from_zero,
+              std::string label) {
+  Range range;
+  if (from_zero) range.Add(0);
+  for (const auto& column : columns) range.Add(column);
+  const Range padded = range.Padded(from_zero ? 0 : 0.04, 0.06);
+  return NiceAxis(padded.lo, padded.hi, 4, true, std::move(label));
+}
+
 }  // namespace
 
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
@@ -50,113 +82,106 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   DrawTitle(&canvas, options.title.empty() ? "Finger gait" : options.title,
             Facts(frames, hand, options.object_name));
 
-  const double left = 150, width = canvas.width() - left - 290, bottom = canvas.height() - 90;
-  const Axis time = NiceAxis(t.front(), t.back(), 9, false, "simulated time [s]");
-  const int n = std::max(1, hand.num_fingers());
-  const double strip = std::min(32.0, 190.0 / n), strips = 104, first = strips + 40;
-  const double panels_top = first + n * (strip + 6) + 44, room = bottom - panels_top - 2 * 26;
-
-  const auto angle = [](const Frame& frame, double GaitFrame::*field) {
-    return frame.gait.active ? frame.gait.*field * kDegrees : kNoValue;
+  const auto angle = [&](double GaitFrame::*field) {
+    return Column(frames, [field](const Frame& f) {
+      return f.gait.active ? f.gait.*field * kDegrees : kNoValue;
+    });
   };
-  const auto target =
-      Column(frames, [&](const Frame& f) { return angle(f, &GaitFrame::target_angle_rad); });
-  const auto achieved =
-      Column(frames, [&](const Frame& f) { return angle(f, &GaitFrame::achieved_angle_rad); });
+  const auto target = angle(&GaitFrame::target_angle_rad),
+             achieved = angle(&GaitFrame::achieved_angle_rad);
   const auto phi =
       Column(frames, [](const Frame& f) { return TrueManipulability(f, ExploringFinger(f)); });
   const auto stability =
       Column(frames, [](const Frame& f) { return Holds(f) ? f.stability.active : kNoValue; });
   const auto threshold = Column(frames, [](const Frame& f) { return f.stability.threshold; });
-  Range angles, phis, stabilities;
-  angles.Add(target);
-  angles.Add(achieved);
-  phis.Add(0);
-  phis.Add(phi);
-  stabilities.Add(0);
-  stabilities.Add(stability);
-  stabilities.Add(threshold);
-  if (angles.empty()) angles.Add(0), angles.Add(1);
-  if (phis.hi == 0) phis.Add(1);
-  const auto axis = [](const Range& range, const std::string& label) {
-    const Range padded = range.Padded(0, 0.06);
-    return NiceAxis(padded.lo, padded.hi, 4, true, label);
+
+  // Strips: state, gait (while there is one), every finger, events. Panels: what has values.
+  const bool rotates = AnyValue(achieved) || AnyValue(target), explores = AnyValue(phi);
+  const int n = hand.num_fingers();
+  const double left = 150, width = canvas.width() - left - 290, bottom = canvas.height() - 90;
+  const double strip = std::min(32.0, 190.0 / std::max(1, n)), strips = 104;
+  const double fingers_top = strips + (rotates ? 78 : 40),
+               panels_top = fingers_top + n * (strip + 6) + 48;
+  const int panel_count = 1 + rotates + explores;
+  const double each = (bottom - panels_top - 26 * (panel_count - 1)) / panel_count;
+  const Axis time = TimeAxis(frames);
+  std::vector<Panel> panels;
+  const auto add = [&](Axis y) {
+    panels.push_back(
+        {{left, panels_top + (each + 26) * static_cast<double>(panels.size()), width, each},
+         time,
+         std::move(y)});
+    return panels.back();
   };
-  const double each = room / 3;
-  const Panel upper{{left, panels_top, width, each}, time, axis(angles, "object angle [°]")};
-  const Panel middle{{left, panels_top + each + 26, width, each}, time, axis(phis, "φ  [10⁻⁴ m³]")};
-  const Panel lower{{left, panels_top + 2 * each + 52, width, each},
-                    time,
-                    axis(stabilities, StabilityLabel(frames).substr(0, 9))};
-  const std::array<Panel, 3> panels = {upper, middle, lower};
+  const Panel upper =
+      rotates ? add(AxisOver({target, achieved}, true, "object angle [°]")) : Panel{};
+  const Panel middle = explores ? add(AxisOver({phi}, true, "φ  [10⁻⁴ m³]")) : Panel{};
+  const Panel lower = add(AxisOver({stability, threshold}, true, StabilityLabel(frames)));
 
   const auto states =
       Bands(frames, [](const Frame& frame) { return static_cast<int>(frame.state); });
-  DrawStrip(&canvas, upper, strips, 26, "state", states, [](int value) {
+  DrawStrip(&canvas, lower, strips, 26, "state", states, [](int value) {
     const auto state = static_cast<SessionState>(value);
     return BandLook{std::string(Name(state)), StateColour(state)};
   });
-  for (int f = 0; f < hand.num_fingers(); ++f)
-    DrawStrip(&canvas, upper, first + f * (strip + 6), strip, FingerName(hand, f),
+  if (rotates)
+    DrawStrip(&canvas, lower, strips + 36, 26, "gait", Bands(frames, GaitStateOf),
+              [&](int value) { return LookOfGaitState(hand, value); });
+  for (int f = 0; f < n; ++f)
+    DrawStrip(&canvas, lower, fingers_top + f * (strip + 6), strip, FingerName(hand, f),
               Bands(frames, [f](const Frame& frame) { return ActivityOf(frame, f); }),
               [f](int value) { return LookOfActivity(f, value); });
   for (const Panel& panel : panels) {
     DrawStateBackground(&canvas, panel, states);
     DrawGrid(&canvas, panel, &panel == &panels.back());
   }
-  const auto marks = DrawEvents(&canvas, panels, panels_top - 20, frames, events);
-  canvas.Text({left - 12, panels_top - 20}, "events",
+  const auto marks = DrawEvents(&canvas, panels, panels_top - 22, frames, events);
+  canvas.Text({left - 12, panels_top - 22}, "events",
               {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
-  DrawCurve(&canvas, upper, t, target, {kGrey, 2, {10, 6}});
-  DrawCurve(&canvas, upper, t, achieved, {kInk, 3});
   std::vector<LegendEntry> explorers;
-  for (int f = 0; f < hand.num_fingers(); ++f) {
+  if (rotates) {
+    DrawCurve(&canvas, upper, t, target, {kGrey, 2, {10, 6}});
+    DrawCurve(&canvas, upper, t, achieved, {kInk, 3});
+  }
+  for (int f = 0; explores && f < n; ++f) {
     std::vector<double> own = phi;
     for (std::size_t i = 0; i < frames.size(); ++i)
       if (ExploringFinger(frames[i]) != f) own[i] = kNoValue;
     const Pen pen{LookOfFinger(f).colour, 3.5};
     DrawCurve(&canvas, middle, t, own, pen);
-    if (std::any_of(own.begin(), own.end(), [](double v) { return v == v; }))
-      explorers.push_back(LineEntry(FingerName(hand, f), pen));
+    if (AnyValue(own)) explorers.push_back(LineEntry(FingerName(hand, f), pen));
   }
   DrawCurve(&canvas, lower, t, stability, {kInk, 2.5});
   DrawCurve(&canvas, lower, t, threshold, {kVermillion, 2, {12, 7}});
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
-  const auto note = [&](const Panel& panel, const std::vector<double>& values, const char* text) {
-    if (std::any_of(values.begin(), values.end(), [](double v) { return v == v; })) return;
-    canvas.Text({panel.area.x + width / 2, panel.area.y + each / 2}, text,
-                {.size = 20, .colour = kGrey, .align_x = AlignX::kCentre});
-  };
-  note(upper, achieved, "no rotation in this stretch of time");
-  note(middle, phi, "no exploration in this stretch of time");
 
   const double side = left + width + 28;
-  const auto role = [](const char* text, FingerRole value) {
-    return LegendEntry{text, [value](Canvas* c, Point2 middle_point) {
-                         Colour colour = LookOfActivity(0, static_cast<int>(value)).colour;
-                         c->FillBox({middle_point.x - 22, middle_point.y - 9, 44, 18}, colour);
+  const auto patch = [](const char* text, Colour colour) {
+    return LegendEntry{text, [colour](Canvas* c, Point2 m) {
+                         c->FillBox({m.x - 22, m.y - 9, 44, 18}, colour);
                        }};
   };
+  const auto role = [](FingerRole value) {
+    return LookOfActivity(0, static_cast<int>(value)).colour;
+  };
   const std::array<LegendEntry, 4> roles = {
-      role("holds", FingerRole::kHold), role("moves", FingerRole::kMove),
-      role("explores", FingerRole::kExplore),
-      LegendEntry{"lost its contact", [](Canvas* c, Point2 m) {
-                    c->FillBox({m.x - 22, m.y - 9, 44, 18}, kLightGrey);
-                  }}};
-  double y = DrawLegend(&canvas, {side, first}, "finger", roles) + 8;
+      patch("holds", role(FingerRole::kHold)), patch("moves", role(FingerRole::kMove)),
+      patch("explores", role(FingerRole::kExplore)), patch("lost its contact", kLightGrey)};
+  double y = DrawLegend(&canvas, {side, fingers_top}, "finger", roles) + 8;
   if (!marks.empty()) y = DrawLegend(&canvas, {side, y}, "events", marks) + 8;
-  const std::array<LegendEntry, 2> rotation = {LineEntry("achieved", {kInk, 3}),
-                                               LineEntry("reference", {kGrey, 2, {10, 6}})};
-  y = std::max(y, upper.area.y);
-  y = DrawLegend(&canvas, {side, y}, "object angle", rotation);
-  const GaitFrame& gait = frames.back().gait;
-  if (gait.active) {
-    canvas.Text({side, y + 12}, fmt::format("{} cycles, {} regrasps", gait.cycles, gait.regrasps),
+  if (rotates) {
+    const std::array<LegendEntry, 2> rotation = {LineEntry("achieved", {kInk, 3}),
+                                                 LineEntry("reference", {kGrey, 2, {10, 6}})};
+    y = DrawLegend(&canvas, {side, std::max(y, upper.area.y)}, "object angle", rotation);
+    const auto last =
+        std::find_if(frames.rbegin(), frames.rend(), [](const Frame& f) { return f.gait.active; });
+    canvas.Text({side, y + 12},
+                fmt::format("{} cycles, {} regrasps", last->gait.cycles, last->gait.regrasps),
                 {.size = 18});
     y += 30;
   }
-  if (!explorers.empty())
+  if (explores)
     y = DrawLegend(&canvas, {side, std::max(y + 8, middle.area.y)}, "φ, noise-free", explorers);
   const std::array<LegendEntry, 2> holding = {LineEntry("holding fingers", {kInk, 2.5}),
                                               LineEntry("threshold", {kVermillion, 2, {12, 7}})};

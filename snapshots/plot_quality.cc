@@ -65,8 +65,8 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
             Facts(frames, hand, options.object_name));
 
   const double left = 150, width = canvas.width() - left - 290, bottom = canvas.height() - 90;
-  const double strips = 104, first = strips + 92, room = bottom - first - 2 * 26;
-  const Axis time = NiceAxis(t.front(), t.back(), 9, false, "simulated time [s]");
+  const double strips = 104, first = strips + 100, room = bottom - first - 2 * 26;
+  const Axis time = TimeAxis(frames);
 
   Range phi_range;
   phi_range.Add(0);
@@ -119,8 +119,8 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
     DrawStateBackground(&canvas, panel, states);
     DrawGrid(&canvas, panel, &panel == &panels.back());
   }
-  const auto marks = DrawEvents(&canvas, panels, strips + 75, frames, events);
-  canvas.Text({left - 12, strips + 75}, "events",
+  const auto marks = DrawEvents(&canvas, panels, strips + 78, frames, events);
+  canvas.Text({left - 12, strips + 78}, "events",
               {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
   std::vector<LegendEntry> fingers;

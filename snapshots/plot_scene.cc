@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 
 #include "core/hand/kinematics.h"
 #include "snapshots/axes.h"
@@ -13,7 +14,7 @@
 namespace regrasp {
 namespace {
 
-constexpr Colour kPalm{205, 205, 208}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
+constexpr Colour kPalm{214, 214, 218}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
 constexpr double kScaleBar = 0.02;  // [m]
 
 std::vector<Body> Bodies(const Frame& frame, const HandModel& hand, const ObjectModel& object) {
@@ -27,7 +28,7 @@ std::vector<Body> Bodies(const Frame& frame, const HandModel& hand, const Object
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const double to_tip = static_cast<double>(joints.size() - 1 - i);
       colours[hand.joints[joints[i]].child_link] =
-          Tint(colour, std::min(0.84, 0.56 + 0.12 * to_tip));
+          Tint(colour, std::min(0.78, 0.45 + 0.11 * to_tip));
     }
     if (hand.fingers[f].tip_link >= 0) colours[hand.fingers[f].tip_link] = Tint(colour, 0.08);
   }
@@ -90,8 +91,21 @@ class ViewPainter {
               const Vector3d& to_viewer, const Vector3d& up)
       : canvas_(canvas), box_(box) {
     const cv::Size size = canvas->PixelsOf(box);
-    camera_ = FitCamera(bodies, to_viewer, up, size, 46 * canvas->scale());
-    canvas->Paste(Render(bodies, camera_, size), box);
+    // Room above for names and directions, below for the scales.
+    const double unit = canvas->scale();
+    camera_ = FitCamera(bodies, to_viewer, up, size - cv::Size(0, static_cast<int>(120 * unit)),
+                        34 * unit);
+    camera_.centre_y_px += 46 * unit;
+    const cv::Mat picture = Render(bodies, camera_, size);
+    canvas->Paste(picture, box);
+    cv::Mat grey;
+    cv::extractChannel(picture, grey, 1);
+    cv::resize(grey, grey, {}, 1 / kCoarse, 1 / kCoarse, cv::INTER_NEAREST);
+    cv::integral(grey != 255, drawn_, CV_32S);
+    taken_ = {{box.x, box.y, box.width, 34},        // what is seen
+              {box.x, box.y, 150, 120},             // axes
+              {box.br().x - 120, box.y, 120, 140},  // gravity
+              {box.x, box.br().y - 84, 240, 84}};   // scales
   }
 
   Point2 At(const Vector3d& p_W) const {
@@ -117,14 +131,14 @@ class ViewPainter {
     away *= 1 / std::max(1.0, cv::norm(away));
     Point2 best = at;
     double best_cost = 1e30;
-    for (double distance : {42.0, 58.0, 76.0, 100.0})
+    for (double distance : {40.0, 56.0, 74.0, 96.0, 122.0})
       for (int i = 0; i < 16; ++i) {
         const double a = i * std::numbers::pi / 8;
         const Point2 direction(std::cos(a), std::sin(a));
         const Point2 centre =
             at + Point2(direction.x * (distance + width / 2 - 10), direction.y * distance);
         const Box room(centre.x - width / 2 - 4, centre.y - height / 2 - 2, width + 8, height + 4);
-        double cost = 0.6 * distance - 34 * direction.dot(away);
+        double cost = 0.8 * distance - 20 * direction.dot(away) + 90 * Covered(room);
         for (const Box& other : taken_) cost += 3 * std::sqrt((room & other).area());
         if ((room & box_).area() < room.area() - 1) cost += 1e4;
         if (cost < best_cost) best_cost = cost, best = centre;
@@ -143,14 +157,14 @@ class ViewPainter {
                           const std::string& name, Colour colour) {
       const Vector3d d = R_CW * direction_W;
       const Point2 on_sheet(d.x(), d.y());
-      if (cv::norm(on_sheet) < 0.18) {  // along the line of sight: a ring with a dot or a cross
+      if (cv::norm(on_sheet) < 0.42) {  // along the line of sight: a ring with a dot or a cross
         canvas_->Disc(origin, 9, kWhite);
         canvas_->Circle(origin, 9, {pen.colour, 2});
         if (d.z() < 0)
           canvas_->Disc(origin, 3, pen.colour);
         else
           canvas_->Mark(Marker::kCross, origin, 6, pen.colour);
-        canvas_->Text(origin + Point2(16, 14), name, {.size = 18, .colour = colour});
+        canvas_->Text(origin + Point2(-22, 16), name, {.size = 18, .colour = colour});
         return;
       }
       const Point2 head = origin + on_sheet * length;
@@ -159,9 +173,11 @@ class ViewPainter {
                     {.size = 18, .colour = colour, .align_x = AlignX::kCentre});
     };
     const Point2 triad = box_.tl() + Point2(70, 78);
-    draw(triad, Vector3d::UnitX(), 46, {kGrey, 2.4}, "x", kGrey);
-    draw(triad, Vector3d::UnitY(), 46, {kGrey, 2.4}, "y", kGrey);
-    draw(triad, Vector3d::UnitZ(), 46, {kGrey, 2.4}, "z", kGrey);
+    std::array<int, 3> order = {0, 1, 2};  // what points at the viewer goes on top
+    std::sort(order.begin(), order.end(),
+              [&](int a, int b) { return std::abs(R_CW(2, a)) < std::abs(R_CW(2, b)); });
+    static constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+    for (int k : order) draw(triad, Vector3d::Unit(k), 46, {kGrey, 2.4}, kNames[k], kGrey);
     if (gravity_W.norm() > 1e-6)
       draw({box_.br().x - 70, box_.y + 66}, gravity_W.normalized(), 62, {kVermillion, 4}, "g",
            kVermillion);
@@ -188,8 +204,25 @@ class ViewPainter {
  private:
   Canvas* canvas_;
   Box box_;
+  /// Part of a box on the sheet that bodies cover, 0 .. 1.
+  double Covered(const Box& room) const {
+    const double k = canvas_->scale() / kCoarse;
+    const auto column = [&](double x) {
+      return std::clamp(static_cast<int>((x - box_.x) * k), 0, drawn_.cols - 1);
+    };
+    const auto row = [&](double y) {
+      return std::clamp(static_cast<int>((y - box_.y) * k), 0, drawn_.rows - 1);
+    };
+    const int x0 = column(room.x), x1 = column(room.br().x), y0 = row(room.y),
+              y1 = row(room.br().y);
+    const double sum = drawn_(y1, x1) - drawn_(y0, x1) - drawn_(y1, x0) + drawn_(y0, x0);
+    return sum / 255 / std::max(1, (x1 - x0) * (y1 - y0));
+  }
+
+  static constexpr double kCoarse = 4;  // pixels of the picture per cell of drawn_
   Camera camera_;
   std::vector<Box> taken_;
+  cv::Mat_<int> drawn_;  ///< sums over the cells above and to the left that show a body, 255 each
 };
 
 }  // namespace

@@ -9,8 +9,10 @@
 namespace regrasp {
 namespace {
 
-constexpr double kViewDistance = 0.7;    // of the camera from the middle of the bodies [m]
-constexpr double kBehind = 0.03;         // the white ground counts as this far behind the scene [m]
+constexpr double kViewDistance = 0.7;   // of the camera from the middle of the bodies [m]
+constexpr double kBehind = 0.03;        // the white ground counts as this far behind the scene [m]
+constexpr double kDeepestShadow = 0.5;  // part of the light that the deepest shadow takes
+constexpr double kShadowDepth = 0.02;   // depth behind the surroundings that takes half of that [m]
 constexpr double kContourDepth = 0.004;  // a step in depth that earns a contour [m]
 
 /// Depth, body and surface normal (camera frame) per pixel.
@@ -18,13 +20,13 @@ struct Buffers {
   explicit Buffers(cv::Size size)
       : depth(size, std::numeric_limits<float>::infinity()), body(size, -1), normal(size) {}
   cv::Mat_<float> depth;
-  cv::Mat_<int> body;
+  cv::Mat_<std::int16_t> body;
   cv::Mat_<cv::Vec3f> normal;
 
   void Put(int x, int y, double z, int index, const Vector3d& n) {
     if (!(z < depth(y, x))) return;
     depth(y, x) = static_cast<float>(z);
-    body(y, x) = index;
+    body(y, x) = static_cast<std::int16_t>(index);
     normal(y, x) =
         cv::Vec3f(static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z()));
   }
@@ -144,15 +146,25 @@ void DrawMesh(const Body& body, int index, const Camera& camera, Buffers* out) {
   }
 }
 
-/// How far each pixel lies behind its surroundings [m], >= 0: the shadow of what is nearer.
-cv::Mat_<float> Behind(const cv::Mat_<float>& depth, double far, double radius_px) {
-  cv::Mat_<float> filled = depth.clone(), small, blurred;
-  for (float& z : filled) z = std::isinf(z) ? static_cast<float>(far) : z;
-  const double shrink = 4;
-  cv::resize(filled, small, {}, 1 / shrink, 1 / shrink, cv::INTER_AREA);
-  cv::GaussianBlur(small, small, {}, std::max(0.8, radius_px / shrink));
-  cv::resize(small, blurred, filled.size(), 0, 0, cv::INTER_LINEAR);
-  return cv::max(filled - blurred, 0.0f);
+/// The depth of each pixel's surroundings [m]: what lies behind it is in the shadow of what is
+/// nearer. The blur is wide, so that a quarter of the resolution is enough.
+cv::Mat_<float> Surroundings(const cv::Mat_<float>& depth, double far, double radius_px) {
+  constexpr int kShrink = 4;
+  cv::Mat_<float> small(depth.rows / kShrink + 1, depth.cols / kShrink + 1), blurred;
+  for (int y = 0; y < small.rows; ++y)
+    for (int x = 0; x < small.cols; ++x) {
+      const float z =
+          depth(std::min(depth.rows - 1, y * kShrink), std::min(depth.cols - 1, x * kShrink));
+      small(y, x) = std::isinf(z) ? static_cast<float>(far) : z;
+    }
+  cv::GaussianBlur(small, small, {}, std::max(0.8, radius_px / kShrink));
+  cv::resize(small, blurred, {small.cols * kShrink, small.rows * kShrink}, 0, 0, cv::INTER_LINEAR);
+  return blurred;
+}
+
+double Power28(double v) {
+  const double v4 = (v * v) * (v * v), v8 = v4 * v4;
+  return v4 * v8 * v8 * v8;
 }
 
 }  // namespace
@@ -230,10 +242,12 @@ cv::Mat Render(std::span<const Body> bodies, const Camera& camera, cv::Size size
     }
   }
   double far = 0;
-  for (float z : buffers.depth)
-    if (!std::isinf(z)) far = std::max(far, static_cast<double>(z));
+  for (const Body& body : bodies) {
+    const auto [centre, radius] = body.BoundingSphere();
+    far = std::max(far, camera.Depth(centre) + radius);
+  }
   const double unit = camera.focal_px / kViewDistance * 1e-3;  // pixels per mm, about
-  const cv::Mat_<float> behind = Behind(buffers.depth, far + kBehind, 9 * unit);
+  const cv::Mat_<float> around = Surroundings(buffers.depth, far + kBehind, 5 * unit);
 
   const Vector3d key =
       Vector3d(-0.45, -0.75, -0.75).normalized();  // towards the light, camera frame
@@ -257,37 +271,44 @@ cv::Mat Render(std::span<const Body> bodies, const Camera& camera, cv::Size size
         if (p_B.x() * p_B.y() * p_B.z() > 0) base = body.second_colour;
       }
       const double diffuse = std::max(0.0, n.dot(key)), sky = 0.5 - 0.5 * n.y();
-      const double shadow = std::max(0.45, 1 - 26 * std::max(0.0, behind(y, x) - 0.001));
-      const double light = (0.46 + 0.16 * sky + 0.46 * diffuse) * shadow;
-      const double shine = 34 * shadow * std::pow(std::max(0.0, n.dot(half_way)), 28);
+      const double behind =
+          std::max(0.0, static_cast<double>(buffers.depth(y, x) - around(y, x)) - 0.001);
+      const double shadow = 1 - kDeepestShadow * behind / (behind + kShadowDepth);
+      const double light = (0.52 + 0.16 * sky + 0.44 * diffuse) * shadow;
+      const double shine = 34 * shadow * Power28(std::max(0.0, n.dot(half_way)));
       const auto tone = [&](std::uint8_t c) {
         return static_cast<std::uint8_t>(std::clamp(c * light + shine, 0.0, 255.0));
       };
       picture.at<cv::Vec3b>(y, x) = {tone(base.b), tone(base.g), tone(base.r)};
     }
 
-  cv::Mat contour(size, CV_8U, cv::Scalar(0));
-  const auto id = [&](int y, int x) {
-    const int index = buffers.body(y, x);
-    return index < 0 ? -1 : bodies[static_cast<std::size_t>(index)].id;
-  };
-  for (int y = 0; y + 1 < size.height; ++y)
+  std::vector<int> ids;
+  for (const Body& body : bodies) ids.push_back(body.id);
+  cv::Mat_<std::uint8_t> contour(size, 0);
+  for (int y = 0; y + 1 < size.height; ++y) {
+    const float *z = buffers.depth[y], *z_below = buffers.depth[y + 1];
+    const std::int16_t *body = buffers.body[y], *body_below = buffers.body[y + 1];
+    const auto step = [&](int one, float z1, int other, float z2) {
+      if (one < 0 && other < 0) return false;
+      if (one < 0 || other < 0) return true;
+      return ids[one] != ids[other] || std::abs(z1 - z2) > kContourDepth;
+    };
     for (int x = 0; x + 1 < size.width; ++x)
-      for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
-        const float z = buffers.depth(y, x), other = buffers.depth(y + dy, x + dx);
-        if (std::isinf(z) && std::isinf(other)) continue;
-        if (id(y, x) != id(y + dy, x + dx) || std::abs(z - other) > kContourDepth)
-          contour.at<std::uint8_t>(y, x) = 255;
-      }
-  const int width = std::max(1, static_cast<int>(std::lround(0.5 * unit)));
+      if (step(body[x], z[x], body[x + 1], z[x + 1]) ||
+          step(body[x], z[x], body_below[x], z_below[x]))
+        contour(y, x) = 255;
+  }
+  const int width = std::max(1, static_cast<int>(std::lround(0.45 * unit)));
   cv::dilate(contour, contour, cv::getStructuringElement(cv::MORPH_ELLIPSE, {width, width}));
   cv::blur(contour, contour, {2, 2});
-  for (int y = 0; y < size.height; ++y)
+  for (int y = 0; y < size.height; ++y) {
+    auto* pixel = picture.ptr<cv::Vec3b>(y);
     for (int x = 0; x < size.width; ++x) {
-      const double keep = 1 - 0.75 * contour.at<std::uint8_t>(y, x) / 255.0;
-      auto& pixel = picture.at<cv::Vec3b>(y, x);
-      for (int k = 0; k < 3; ++k) pixel[k] = static_cast<std::uint8_t>(pixel[k] * keep);
+      if (contour(y, x) == 0) continue;
+      const int keep = 255 - contour(y, x) * 3 / 4;
+      for (int k = 0; k < 3; ++k) pixel[x][k] = static_cast<std::uint8_t>(pixel[x][k] * keep / 255);
     }
+  }
   return picture;
 }
 

@@ -59,9 +59,10 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
 void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
                const PlotOptions& options, const std::string& path);
 
-/// Figure 3b: the finger gait over time: object angle (reference and achieved), the role of every
-/// finger, and how far the object is from where control wants it. Also draws runs without a
-/// rotation.
+/// Figure 3b: the finger gait over time: the state of the gait by the paper's names, the role of
+/// every finger, the object's angle (reference and achieved), manipulability of the finger that
+/// explores, stability of the grasp. What does not occur in the history (no rotation, no
+/// exploration) is left out.
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
               const PlotOptions& options, const std::string& path);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -71,6 +72,12 @@ std::string Facts(std::span<const Frame> frames, const HandModel& hand, const st
   if (frames.size() == 1) return text + fmt::format(" · simulated time {:.2f} s", last.time_s);
   return text +
          fmt::format(" · simulated time {:.2f} to {:.2f} s", frames.front().time_s, last.time_s);
+}
+
+Axis TimeAxis(std::span<const Frame> frames) {
+  double lo = frames.front().time_s;
+  if (lo - std::floor(lo) < 0.1) lo = std::floor(lo);
+  return NiceAxis(lo, frames.back().time_s, 9, false, "simulated time [s]");
 }
 
 std::string FingerName(const HandModel& hand, int finger) {

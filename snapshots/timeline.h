@@ -20,6 +20,9 @@ namespace regrasp {
 std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
                               const std::string& path);
 
+/// The time axis of these frames; a start within 0.1 s of a whole second is moved there.
+Axis TimeAxis(std::span<const Frame> frames);
+
 /// "seed 1 · noise paper · object sphere · hand shadow · 12.00–40.02 s": what a reader needs to
 /// repeat it.
 std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object);
