@@ -1,0 +1,38 @@
+#include "daemon/history.h"
+
+namespace regrasp {
+
+void History::Add(const Frame& frame) {
+  // Half a tick of slack: times are multiples of dt, their differences carry rounding.
+  if (!fine_.empty() && frame.time_s - fine_.back()->time_s < kFinePeriod - 1e-4) return;
+  fine_.push_back(std::make_shared<const Frame>(frame));
+  if (fine_.size() <= kFine) return;
+  if (aged_++ % kCoarseEvery == 0) coarse_.push_back(fine_.front());
+  fine_.pop_front();
+  if (coarse_.size() > kCoarse) coarse_.pop_front();
+}
+
+void History::Add(const Event& event) {
+  events_.push_back(event);
+  if (events_.size() > kEvents) events_.pop_front();
+}
+
+void History::Clear() {
+  fine_.clear();
+  coarse_.clear();
+  events_.clear();
+  aged_ = 0;
+}
+
+std::vector<std::shared_ptr<const Frame>> History::Frames(double last_s) const {
+  std::vector<std::shared_ptr<const Frame>> frames;
+  if (fine_.empty()) return frames;
+  const double since = last_s > 0 ? fine_.back()->time_s - last_s : -1.0;
+  frames.reserve(size());
+  for (const auto* part : {&coarse_, &fine_})
+    for (const auto& frame : *part)
+      if (frame->time_s >= since) frames.push_back(frame);
+  return frames;
+}
+
+}  // namespace regrasp

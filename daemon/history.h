@@ -1,0 +1,41 @@
+#pragma once
+
+/// The frames that pictures are drawn from: the last minute at 50 Hz, the nine minutes before at 5
+/// Hz (about 35 MB in all). I/O thread only.
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "core/session/frame.h"
+
+namespace regrasp {
+
+class History {
+ public:
+  static constexpr double kFinePeriod = 0.02;   ///< [s of simulated time]
+  static constexpr std::size_t kFine = 3000;    ///< frames: 60 s
+  static constexpr std::size_t kCoarse = 2700;  ///< frames: 540 s
+  static constexpr std::size_t kCoarseEvery =
+      10;  ///< one of so many fine frames is kept for longer
+  static constexpr std::size_t kEvents = 4096;
+
+  /// Keeps the frame when kFinePeriod has passed since the last one kept.
+  void Add(const Frame& frame);
+  void Add(const Event& event);
+  /// Forgets everything: a new run began.
+  void Clear();
+
+  /// Frames of the last `last_s` seconds of simulated time (0 = all), oldest first.
+  std::vector<std::shared_ptr<const Frame>> Frames(double last_s) const;
+  /// Events kept, oldest first.
+  std::vector<Event> Events() const { return {events_.begin(), events_.end()}; }
+  std::size_t size() const { return fine_.size() + coarse_.size(); }
+
+ private:
+  std::deque<std::shared_ptr<const Frame>> coarse_, fine_;
+  std::size_t aged_ = 0;  ///< frames that have left the fine part
+  std::deque<Event> events_;
+};
+
+}  // namespace regrasp

@@ -1,0 +1,122 @@
+// Requests that produce files.
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+
+#include "daemon/handlers.h"
+#include "snapshots/snapshots.h"
+
+namespace regrasp::handlers {
+namespace {
+
+constexpr std::size_t kMaxFileName = 128;
+
+/// A plain file name with a picture's suffix; throws otherwise (rule 9).
+std::string CheckedFileName(const std::string& name) {
+  const auto refuse = [](std::string message) {
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                std::move(message),
+                                "give a plain name such as quality.png",
+                                "file",
+                                {".png", ".jpg", ".jpeg"}});
+  };
+  if (name.empty() || name.size() > kMaxFileName)
+    refuse(fmt::format("file name of {} bytes; allowed are 1 to {}", name.size(), kMaxFileName));
+  const bool control =
+      std::ranges::any_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  if (control || name.find('/') != std::string::npos || name.front() == '.')
+    refuse("file is not a plain file name");
+  const std::string suffix = std::filesystem::path(name).extension().string();
+  if (suffix != ".png" && suffix != ".jpg" && suffix != ".jpeg")
+    refuse(fmt::format("file '{}' is not a picture", name));
+  return name;
+}
+
+/// Everything the worker needs, so that it shares nothing with the I/O thread.
+struct Job {
+  std::string name, file;
+  std::filesystem::path directory;
+  std::vector<std::shared_ptr<const Frame>> frames;
+  std::vector<Event> events;
+  HandModel hand;
+  std::shared_ptr<const ObjectModel> object;
+  PlotOptions options;
+  std::uintmax_t bytes = 0;
+  std::string failure;
+};
+
+/// Draws beside the target and renames: a reader sees the old picture or the new one, and a
+/// symbolic link is replaced, not followed.
+void Draw(Job* job) {
+  try {
+    std::filesystem::create_directories(job->directory);
+    const std::filesystem::path target = job->directory / job->file;
+    const std::filesystem::path draft =
+        job->directory / fmt::format(".draft{}", target.extension().string());
+    std::vector<Frame> history;
+    history.reserve(job->frames.size());
+    for (const auto& frame : job->frames) history.push_back(*frame);
+    std::filesystem::remove(draft);
+    if (job->name == "contacts")
+      PlotContacts(history, job->hand, *job->object, job->options, draft.string());
+    else if (job->name == "gait")
+      PlotGait(history, job->events, job->hand, job->options, draft.string());
+    else if (job->name == "scene")
+      PlotScene(history.back(), job->hand, *job->object, job->options, draft.string());
+    else
+      PlotQuality(history, job->events, job->hand, job->options, draft.string());
+    job->bytes = std::filesystem::file_size(draft);
+    std::filesystem::rename(draft, target);
+  } catch (const std::exception& e) {
+    job->failure = e.what();
+  }
+}
+
+}  // namespace
+
+Outcome Plot(Service& service, const Params& params, Client&) {
+  const auto job = std::make_shared<Job>();
+  job->name = params.String("name");
+  job->file = CheckedFileName(params.String("file", job->name + ".png"));
+  job->options.last_s = params.Number("last_s", 0);
+  job->options.object_name = service.accepted.object->name;
+  job->frames = service.history().Frames(job->options.last_s);
+  if (job->name == "scene") {
+    job->frames = {std::make_shared<const Frame>(service.newest().frame)};
+    job->options.last_s = 0;
+  }
+  if (job->frames.empty())
+    throw RpcException(ErrorCode::kBadState, "nothing has happened yet", "regrasp grasp");
+  job->events = service.history().Events();
+  job->hand = service.hand();
+  job->object = service.accepted.object;
+  job->directory = service.config().output_dir;
+  const std::int64_t tick = job->frames.back()->tick;
+
+  Outcome outcome;
+  outcome.begin = [&service, job, tick](Done done) {
+    const auto finish = [job, tick, done] {
+      if (!job->failure.empty()) {
+        const RpcError error{ErrorCode::kIo, job->failure, "look at output_dir in status", {}, {}};
+        return done({}, &error);
+      }
+      done({{"file", job->file},
+            {"path", (job->directory / job->file).string()},
+            {"bytes", job->bytes},
+            {"tick", tick}},
+           nullptr);
+    };
+    if (!service.host().Background([job] { Draw(job.get()); }, finish)) {
+      const RpcError error{
+          ErrorCode::kBusy, "too many pictures are being drawn", "try again later", {}, {}};
+      done({}, &error);
+    }
+  };
+  return outcome;
+}
+
+}  // namespace regrasp::handlers

@@ -1,0 +1,211 @@
+// Commands that change the simulation.
+
+#include <fmt/format.h>
+
+#include "core/sensing/noise.h"
+#include "daemon/frame_json.h"
+#include "daemon/handlers.h"
+
+namespace regrasp::handlers {
+namespace {
+
+/// Checks, makes a job and queues the command that works on it.
+Outcome StartJob(Service& service, JobMethod method, Command command) {
+  service.CheckAllowed(command.type);
+  JobRecord& job = service.jobs().Add(method);
+  const std::int64_t id = job.id;
+  job.explore.finger = command.finger;
+  job.explore.criterion = command.criterion;
+  job.explore.estimator = command.estimator;
+  job.explore.seed = command.seed;
+  command.job = id;
+  try {
+    const std::uint64_t barrier = service.PostCommand(std::move(command));
+    return {.result = {{"job", id}}, .barrier = barrier};
+  } catch (...) {
+    service.jobs().Withdraw(id);
+    throw;
+  }
+}
+
+Command Of(CommandType type) {
+  Command command;
+  command.type = type;
+  return command;
+}
+
+/// The word's place in `values`, which is also its value in the enumeration `E`.
+template <typename E>
+E EnumNamed(std::string_view word, std::initializer_list<E> values) {
+  for (const E value : values)
+    if (Name(value) == word) return value;
+  return *values.begin();
+}
+
+Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
+  return {.barrier = barrier, .later = [&service] {
+            return Json{{"paused", service.newest().paused}, {"tick", service.newest().frame.tick}};
+          }};
+}
+
+Json ParamEntry(Service& service, int index) {
+  return ParameterJson(ParameterTable()[static_cast<std::size_t>(index)],
+                       service.accepted.parameters);
+}
+
+}  // namespace
+
+Outcome Grasp(Service& service, const Params&, Client&) {
+  return StartJob(service, JobMethod::kGrasp, Of(CommandType::kGrasp));
+}
+
+Outcome Release(Service& service, const Params&, Client&) {
+  return StartJob(service, JobMethod::kRelease, Of(CommandType::kRelease));
+}
+
+Outcome Explore(Service& service, const Params& params, Client&) {
+  Command command = Of(CommandType::kExplore);
+  command.finger = service.hand().FindFinger(params.String("finger"));
+  command.criterion = EnumNamed(params.String("criterion", "manipulability"),
+                                {Criterion::kManipulability, Criterion::kStability,
+                                 Criterion::kSwitched, Criterion::kCombined});
+  command.estimator = EnumNamed(params.String("estimator", "least_squares"),
+                                {Estimator::kLeastSquares, Estimator::kSecant});
+  command.seed = static_cast<std::uint64_t>(
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+  command.max_cycles = static_cast<int>(params.Integer("max_cycles", 0));
+  return StartJob(service, JobMethod::kExplore, std::move(command));
+}
+
+Outcome Stop(Service& service, const Params&, Client&) {
+  service.CheckAllowed(CommandType::kStop);
+  const JobRecord* job = service.jobs().Unfinished();
+  const Json id = job ? Json(job->id) : Json();
+  return {.result = {{"job", id}}, .barrier = service.PostCommand(Of(CommandType::kStop))};
+}
+
+Outcome Pause(Service& service, const Params&, Client&) {
+  const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kPause});
+  service.accepted.paused = true;
+  return ClockAnswer(service, barrier);
+}
+
+Outcome Resume(Service& service, const Params&, Client&) {
+  service.CheckNotFaulted();
+  const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kResume});
+  service.accepted.paused = false;
+  return ClockAnswer(service, barrier);
+}
+
+Outcome Step(Service& service, const Params& params, Client&) {
+  service.CheckNotFaulted();
+  if (!service.accepted.paused)
+    throw RpcException(ErrorCode::kBadState, "the simulation is not paused", "regrasp pause");
+  if (const JobRecord* step = service.jobs().UnfinishedStep())
+    throw RpcException(ErrorCode::kBusy, fmt::format("another step is running (job {})", step->id),
+                       fmt::format("regrasp job wait {}", step->id));
+  const std::int64_t id = service.jobs().Add(JobMethod::kStep).id;
+  try {
+    const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kStep,
+
+                                                .job = id,
+                                                .ticks = params.Integer("ticks", 1)});
+    return {.result = {{"job", id}}, .barrier = barrier};
+  } catch (...) {
+    service.jobs().Withdraw(id);
+    throw;
+  }
+}
+
+Outcome Reset(Service& service, const Params& params, Client&) {
+  Command command = Of(CommandType::kReset);
+  command.seed = static_cast<std::uint64_t>(
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+  if (params.Has("object")) {
+    try {
+      command.object = std::make_shared<const ObjectModel>(
+          LoadObject(params.String("object"), service.config().search_path));
+    } catch (const ModelError& e) {
+      throw RpcException(RpcError{ErrorCode::kIo, e.what(), "correct the model", "object", {}});
+    }
+  }
+  ControlRequest request;
+  request.command = command;
+  const std::uint64_t barrier = service.Post(std::move(request));
+  Service::Accepted& accepted = service.accepted;
+  accepted.seed = command.seed;
+  accepted.parameters = ParametersAfterReset(accepted.parameters, command.object.get());
+  if (command.object) accepted.object = command.object;
+  return {.result = {{"seed", accepted.seed}, {"object", accepted.object->name}},
+          .barrier = barrier};
+}
+
+Outcome Push(Service& service, const Params& params, Client&) {
+  service.CheckAllowed(CommandType::kPush);
+  Command command = Of(CommandType::kPush);
+  command.force_W = params.Vector("force_n");
+  command.duration_s = params.Number("duration_s", 0.1);
+  const Vector3d& f = command.force_W;
+  Json result = {{"force_n", {f.x(), f.y(), f.z()}}, {"duration_s", command.duration_s}};
+  return {.result = std::move(result), .barrier = service.PostCommand(std::move(command))};
+}
+
+Outcome NoiseGet(Service& service, const Params&, Client&) {
+  return {.result = NoiseJson(service.accepted.noise)};
+}
+
+Outcome NoiseSet(Service& service, const Params& params, Client&) {
+  service.CheckAllowed(CommandType::kNoise);
+  NoiseLevels levels = service.accepted.noise;
+  if (params.Has("preset")) levels = *NoisePreset(params.String("preset"));
+  levels.position_m = params.Number("position_m", levels.position_m);
+  levels.normal_rad = params.Number("normal_rad", levels.normal_rad);
+  levels.force_n = params.Number("force_n", levels.force_n);
+  levels.joint_rad = params.Number("joint_rad", levels.joint_rad);
+  levels.object_position_m = params.Number("object_position_m", levels.object_position_m);
+  levels.object_rotation_rad = params.Number("object_rotation_rad", levels.object_rotation_rad);
+  Command command = Of(CommandType::kNoise);
+  command.noise = levels;
+  const std::uint64_t barrier = service.PostCommand(std::move(command));
+  service.accepted.noise = levels;
+  return {.result = NoiseJson(levels), .barrier = barrier};
+}
+
+Outcome ParamGet(Service& service, const Params& params, Client&) {
+  if (params.Has("name"))
+    return {.result = ParamEntry(service, FindParameter(params.String("name")))};
+  Json list = Json::array();
+  for (const ParameterInfo& info : ParameterTable())
+    list.push_back(ParameterJson(info, service.accepted.parameters));
+  return {.result = {{"parameters", std::move(list)}}};
+}
+
+Outcome ParamSet(Service& service, const Params& params, Client&) {
+  service.CheckAllowed(CommandType::kParameter);
+  const int index = FindParameter(params.String("name"));
+  const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(index)];
+  const auto refuse = [&](std::string message) {
+    throw RpcException(RpcError{
+        ErrorCode::kInvalidParams,
+        std::move(message),
+        fmt::format("allowed: {}{} ... {}{}", info.size == 1 ? "" : "3 numbers, each ", info.min,
+                    info.max, info.unit.empty() ? "" : fmt::format(" {}", info.unit)),
+        "value",
+        {}});
+  };
+  const int given = params.Size("value");
+  if (given != info.size)
+    refuse(fmt::format("{} takes {} number{}, not {}", info.name, info.size,
+                       info.size == 1 ? "" : "s", given));
+  Command command = Of(CommandType::kParameter);
+  command.parameter = index;
+  command.value = params.Vector("value");
+  for (int i = 0; i < info.size; ++i)
+    if (command.value[i] < info.min || command.value[i] > info.max)
+      refuse(fmt::format("{} = {} is out of range", info.name, command.value[i]));
+  const std::uint64_t barrier = service.PostCommand(command);
+  SetParameter(&service.accepted.parameters, command);
+  return {.result = ParamEntry(service, index), .barrier = barrier};
+}
+
+}  // namespace regrasp::handlers
