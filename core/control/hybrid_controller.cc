@@ -7,6 +7,9 @@
 namespace regrasp {
 namespace {
 
+// Below this speed the friction feedforward of a sliding finger fades out [m/s].
+constexpr double kSlowSlide = 0.001;
+
 /// Damped pseudo-inverse J⁺ = Jᵀ (J Jᵀ + lambda² I)⁻¹, n x 3.
 using FingerPinv = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxFingerJoints, 3>;
 FingerPinv DampedPinv(const FingerJacobian& J, double lambda) {
@@ -49,7 +52,10 @@ Vector3d HybridController::SlideForce(const FingerEstimate& finger, const Finger
     state->normal_integral = std::clamp(state->normal_integral, -0.5 * task.force, 0.5 * task.force);
   }
   const double normal_force = task.force + state->normal_integral;
-  return parameters.slide_stiffness * error - normal_force * finger.normal_W;
+  // Friction is overcome by feedforward; the spring about the reference only corrects.
+  const Vector3d v = TangentPart(task.v_W, finger.normal_W);
+  const Vector3d friction = parameters.slide_friction_share * task.force * v / (v.norm() + kSlowSlide);
+  return friction + parameters.slide_stiffness * error - normal_force * finger.normal_W;
 }
 
 const JointVector& HybridController::Update(const Estimate& estimate, const FingerTasks& tasks,

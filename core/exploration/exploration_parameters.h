@@ -17,7 +17,7 @@ struct ExplorationParameters {
   double speed_min = 0.004;          ///< [m/s]
   double speed_max = 0.015;          ///< [m/s]
   double normal_force = 0.4;         ///< of the exploring finger [N]
-  double max_excursion = 0.012;      ///< from where it started [m]
+  double max_excursion = 0.008;      ///< from where it started [m]
   double limit_margin = 0.04;        ///< a joint this near to its limit is a wall [rad]
   double clearance = 0.002;          ///< a link of another finger this near is a wall [m]
   double dither_speed = 0.005;       ///< least_squares: circular dither [m/s]

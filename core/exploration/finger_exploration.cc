@@ -63,7 +63,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
   task.force = parameters.normal_force;
   task.v_W.setZero();
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
-  FindWalls(hand, estimate, request_.finger, parameters, &input.walls_W);
+  FindWalls(hand, estimate, request_.finger, parameters, &input.walls);
 
   if (phase_ == Phase::kSettle) {
     if (stop_) {

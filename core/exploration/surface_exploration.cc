@@ -15,6 +15,8 @@ Vector3d LimitNorm(const Vector3d& v, double limit) {
 // Position variance below which the least-squares rule distrusts a direction: contact noise that is
 // left after filtering is about 0.13 mm.
 constexpr double kRidge = 2e-8;  // m²
+// Rate at which a finger backs out of a wall.
+constexpr double kWallReturn = 5.0;  // 1/s
 
 }  // namespace
 
@@ -25,7 +27,8 @@ Vector3d SurfaceExploration::FreeGradient(const Input& input,
   const double distance = excursion.norm();
   if (distance > parameters.max_excursion)
     gradient -= std::max(0.0, gradient.dot(excursion) / distance) * excursion / distance;
-  for (const Vector3d& wall : input.walls_W) gradient -= std::max(0.0, gradient.dot(wall)) * wall;
+  for (const Wall& wall : input.walls)
+    gradient -= std::max(0.0, gradient.dot(wall.direction_W)) * wall.direction_W;
   return gradient;
 }
 
@@ -78,6 +81,8 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
     const double speed = std::clamp(parameters.eta * norm, parameters.speed_min, parameters.speed_max);
     velocity_W_ = tangent * (speed / norm);
   }
+  for (const Wall& wall : input.walls)
+    velocity_W_ -= std::min(parameters.speed_max, kWallReturn * wall.depth) * wall.direction_W;
   if (least_squares) {
     const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;
     velocity_W_ += parameters.dither_speed *

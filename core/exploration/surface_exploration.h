@@ -33,6 +33,12 @@
 
 namespace regrasp {
 
+/// A direction in which the finger must not go on.
+struct Wall {
+  Vector3d direction_W = Vector3d::Zero();  ///< unit tangent, into the wall
+  double depth = 0;                         ///< how far the contact is beyond it, >= 0 [m]
+};
+
 class SurfaceExploration {
  public:
   enum class Status : std::uint8_t { kRunning, kConverged, kMaxCycles };
@@ -42,8 +48,7 @@ class SurfaceExploration {
     Vector3d p_WC = Vector3d::Zero();        ///< sensed contact point [m]
     Vector3d normal_W = Vector3d::UnitZ();   ///< sensed outward object normal
     double phi = 0;                          ///< objective, of order 1
-    /// Unit tangents in which the finger must not go on: joint limits, other fingers.
-    FixedVector<Vector3d, 8> walls_W;
+    FixedVector<Wall, 8> walls;              ///< joint limits, other fingers
   };
 
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.

@@ -47,17 +47,19 @@ Vector3d BetweenSegments(const Capsule& one, const Capsule& two) {
   return (two.a + t * d2) - (one.a + s * d1);
 }
 
-void AddWall(const Vector3d& direction, const Vector3d& normal, FixedVector<Vector3d, 8>* walls_W) {
+/// `direction`: of contact motion, any length; `depth` [m] along it.
+void AddWall(const Vector3d& direction, double depth, const Vector3d& normal,
+             FixedVector<Wall, 8>* walls) {
   const Vector3d tangent = TangentPart(direction, normal);
-  if (tangent.norm() > 0.2 * direction.norm() && direction.norm() > 0)
-    walls_W->push_back(tangent.normalized());
+  const double share = tangent.norm() / direction.norm();
+  if (share > 0.2) walls->push_back({tangent.normalized(), depth / share});
 }
 
 }  // namespace
 
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
-               const ExplorationParameters& parameters, FixedVector<Vector3d, 8>* walls_W) {
-  walls_W->clear();
+               const ExplorationParameters& parameters, FixedVector<Wall, 8>* walls) {
+  walls->clear();
   const FingerEstimate& f = estimate.fingers[finger];
   const Finger& model = hand.fingers[finger];
   const Matrix3d inverse =
@@ -66,20 +68,24 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
     const Joint& joint = hand.joints[model.joints[k]];
     const double q = estimate.q[model.joints[k]];
     const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));  // d q_k / d v
-    if (q > joint.upper - parameters.limit_margin) AddWall(row, f.normal_W, walls_W);
-    if (q < joint.lower + parameters.limit_margin) AddWall(-row, f.normal_W, walls_W);
+    const double above = q - (joint.upper - parameters.limit_margin);
+    const double below = joint.lower + parameters.limit_margin - q;
+    if (above > 0) AddWall(row, above / row.norm(), f.normal_W, walls);
+    if (below > 0) AddWall(-row, below / row.norm(), f.normal_W, walls);
   }
   Capsule own, other;
-  if (!CapsuleOf(hand, estimate, model.tip_link, &own)) return;
-  for (int i = 0; i < hand.num_fingers(); ++i) {
-    if (i == finger) continue;
-    const int tip = hand.fingers[i].tip_link;
-    const int before_tip = hand.joints[hand.links[tip].parent_joint].parent_link;
-    for (int link : {tip, before_tip}) {
-      if (!CapsuleOf(hand, estimate, link, &other)) continue;
-      const Vector3d between = BetweenSegments(own, other);
-      if (between.norm() < own.radius + other.radius + parameters.clearance)
-        AddWall(between, f.normal_W, walls_W);
+  const auto Before = [&](int link) { return hand.joints[hand.links[link].parent_joint].parent_link; };
+  for (int own_link : {model.tip_link, Before(model.tip_link)}) {
+    if (!CapsuleOf(hand, estimate, own_link, &own)) continue;
+    for (int i = 0; i < hand.num_fingers(); ++i) {
+      const int tip = hand.fingers[i].tip_link;
+      if (i == finger) continue;
+      for (int link : {tip, Before(tip)}) {
+        if (!CapsuleOf(hand, estimate, link, &other)) continue;
+        const Vector3d between = BetweenSegments(own, other);
+        const double depth = own.radius + other.radius + parameters.clearance - between.norm();
+        if (depth > 0) AddWall(between, depth, f.normal_W, walls);
+      }
     }
   }
 }

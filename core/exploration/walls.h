@@ -1,15 +1,14 @@
 #pragma once
 
 #include "core/control/estimate.h"
-#include "core/exploration/exploration_parameters.h"
+#include "core/exploration/surface_exploration.h"
 
 namespace regrasp {
 
-/// Directions in which a sliding finger must not go on, as unit tangents at its contact, in W: those that
-/// bring a joint nearer to its limit when it is within `limit_margin`, or its tip link nearer to another
-/// finger's when they are within `clearance`. Joint limits use the damped-free row of J⁺: the contact
-/// velocity that moves this joint most.
+/// What a sliding finger must not run into: its joint limits, from `limit_margin` on, and the other
+/// fingers, from `clearance` on (last two links of each). A joint's wall is the direction of contact
+/// motion that moves this joint most, its row of J⁺.
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
-               const ExplorationParameters& parameters, FixedVector<Vector3d, 8>* walls_W);
+               const ExplorationParameters& parameters, FixedVector<Wall, 8>* walls);
 
 }  // namespace regrasp

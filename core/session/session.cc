@@ -118,9 +118,12 @@ struct Session::Impl {
     RandomStream start(seed, kStartStream);
     const Scenario& scenario = config.model.scenario;
     JointVector q0 = scenario.q_preshape;
+    q_closed = scenario.q_closed;
     for (int j = 0; j < hand.num_joints(); ++j) {
-      q0[j] += parameters.start.joint_sigma_rad * start.Normal();
-      q0[j] = std::clamp(q0[j], hand.joints[j].lower, hand.joints[j].upper);
+      // The same offset for both, so that the fingers really touch elsewhere.
+      const double offset = parameters.start.joint_sigma_rad * start.Normal();
+      q0[j] = std::clamp(q0[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
+      q_closed[j] = std::clamp(q_closed[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
     }
     Isometry3d X_WO = scenario.X_WO;
     X_WO.translation() += parameters.start.object_sigma_m * start.Normal3();
@@ -445,7 +448,7 @@ struct Session::Impl {
   }
 
   void UpdateGrasp() {
-    grasp.Update(estimator.estimate(), config.model.scenario.q_closed, parameters.gravity_W,
+    grasp.Update(estimator.estimate(), q_closed, parameters.gravity_W,
                  parameters.control, &controller, &tasks);
     job.progress = std::min(0.99, grasp.progress());
     if (world->stand_in() != grasp.needs_stand_in()) {
@@ -659,7 +662,7 @@ struct Session::Impl {
   FingerExploration exploration;
   QualityMonitor monitor;
   FingerTasks tasks;
-  JointVector q_open, torque;
+  JointVector q_open, q_closed, torque;
   std::int64_t tick = 0, push_until = -1, release_tick = -1;
   int drop_ticks = 0;
   SessionState state = SessionState::kIdle;

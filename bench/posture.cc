@@ -1,0 +1,218 @@
+// Searches the generic preshape and closed posture of a hand for its scenario file.
+//   posture [--hand NAME] [--seed S] [--steps N] [--radius MM] [--tilt DEG]
+// Random hill climbing over object position, contact directions and redundant joint angles. A posture is
+// good when the grasp without each finger in turn (the thumb above all) keeps a load margin, joints are
+// far from their limits, no finger is near singular and links keep clear of each other. Prints TOML.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "core/common/random.h"
+#include "core/hand/kinematics.h"
+#include "core/hand/scenario.h"
+#include "core/quality/load_margin.h"
+
+#include <Eigen/SVD>
+
+using namespace regrasp;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+struct Candidate {
+  JointVector q;
+  Vector3d p_WO;
+  double score = -1e9;
+  std::vector<double> rho;  // without each finger
+  double clearance = 0, margin = 0, sigma = 0;
+};
+
+/// Moves the tip of `finger` to `target` from `q`; false when it does not get there inside the limits.
+bool SolveTip(const HandModel& hand, int finger, const Vector3d& target, JointVector* q) {
+  KinematicsData data;
+  for (int k = 0; k < 60; ++k) {
+    ForwardKinematics(hand, *q, &data);
+    const Vector3d tip = FingertipCentre(hand, data, finger);
+    const Vector3d error = target - tip;
+    if (error.norm() < 1e-5) return true;
+    const FingerJacobian J = PointJacobian(hand, data, finger, tip);
+    const FingerVector dq =
+        J.transpose() * (J * J.transpose() + 1e-5 * Matrix3d::Identity()).inverse() * error;
+    const auto& joints = hand.fingers[finger].joints;
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const Joint& joint = hand.joints[joints[i]];
+      (*q)[joints[i]] = std::clamp((*q)[joints[i]] + dq[static_cast<Eigen::Index>(i)], joint.lower, joint.upper);
+    }
+  }
+  return false;
+}
+
+double SegmentDistance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0, const Vector3d& b1) {
+  double best = 1e9;  // sampled: 0.3 mm is plenty here
+  for (int i = 0; i <= 12; ++i) {
+    const Vector3d p = a0 + (a1 - a0) * (i / 12.0);
+    const Vector3d d = b1 - b0;
+    const double len = d.squaredNorm();
+    const double t = len > 0 ? std::clamp((p - b0).dot(d) / len, 0.0, 1.0) : 0.0;
+    best = std::min(best, (p - b0 - t * d).norm());
+  }
+  return best;
+}
+
+/// Smallest gap between links of different fingers, and of links that are not tips to the object.
+double Clearance(const HandModel& hand, const KinematicsData& data, const Vector3d& p_WO, double radius) {
+  double gap = 1e9;
+  std::vector<int> finger_of(hand.links.size(), -1);
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    for (int j : hand.fingers[f].joints) finger_of[hand.joints[j].child_link] = f;
+  for (std::size_t a = 1; a < hand.links.size(); ++a) {
+    for (const Shape& sa : hand.links[a].shapes) {
+      if (sa.kind != Shape::Kind::kCapsule || finger_of[a] < 0) continue;
+      const Vector3d a0 = data.X_WL[a] * sa.a_L, a1 = data.X_WL[a] * sa.b_L;
+      if (static_cast<int>(a) != hand.fingers[finger_of[a]].tip_link)
+        gap = std::min(gap, SegmentDistance(a0, a1, p_WO, p_WO) - sa.radius - radius);
+      for (std::size_t b = a + 1; b < hand.links.size(); ++b) {
+        if (finger_of[b] < 0 || finger_of[a] == finger_of[b]) continue;
+        for (const Shape& sb : hand.links[b].shapes) {
+          if (sb.kind != Shape::Kind::kCapsule) continue;
+          gap = std::min(gap, SegmentDistance(a0, a1, data.X_WL[b] * sb.a_L, data.X_WL[b] * sb.b_L) -
+                                  sa.radius - sb.radius);
+        }
+      }
+    }
+  }
+  for (const Shape& palm : hand.links[0].shapes) {  // the object keeps off the palm
+    if (palm.kind != Shape::Kind::kBox) continue;
+    const Vector3d p = palm.X_LB.inverse() * p_WO;
+    const Vector3d outside = (p.cwiseAbs() - palm.half_extents).cwiseMax(0.0);
+    gap = std::min(gap, outside.norm() - radius - 0.004);
+  }
+  return gap;
+}
+
+void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Candidate* c) {
+  KinematicsData data;
+  ForwardKinematics(hand, c->q, &data);
+  c->clearance = Clearance(hand, data, c->p_WO, radius);
+  c->margin = 1e9;
+  for (int j = 0; j < hand.num_joints(); ++j) {
+    const Joint& joint = hand.joints[j];
+    const double half = 0.5 * (joint.upper - joint.lower);
+    c->margin = std::min(c->margin, 1.0 - std::abs(c->q[j] - 0.5 * (joint.upper + joint.lower)) / half);
+  }
+  std::vector<GraspContact> contacts;
+  c->sigma = 1e9;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const Vector3d tip = FingertipCentre(hand, data, f);
+    const Vector3d n = (c->p_WO - tip).normalized();
+    contacts.push_back({-n * radius, n, 0.5});
+    const Eigen::Matrix3Xd J = PointJacobian(hand, data, f, tip + n * hand.fingers[f].tip_radius);
+    c->sigma = std::min(c->sigma, Eigen::JacobiSVD<Eigen::Matrix3Xd>(J).singularValues()[2]);
+  }
+  c->rho.clear();
+  double worst_other = 1e9;
+  const int last = hand.num_fingers() - 1;
+  for (int without = 0; without <= last; ++without) {
+    std::vector<GraspContact> rest;
+    for (int f = 0; f <= last; ++f)
+      if (f != without) rest.push_back(contacts[f]);
+    c->rho.push_back(LoadMargin(rest, 0.08 * gravity, radius, 4.0));
+    if (without < last) worst_other = std::min(worst_other, c->rho.back());
+  }
+  c->score = 2.0 * std::min(c->rho[last], 0.3) / 0.3 + 1.0 * std::min(c->rho[last], 1.5) +
+             1.0 * std::min(worst_other, 1.0) +
+             1.5 * std::min(c->margin, 0.5) / 0.5 + 1.0 * std::min(c->sigma, 0.03) / 0.03 +
+             std::min(0.0, (c->clearance - 0.005) / 0.001);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string name = "shadow";
+  std::uint64_t seed = 1;
+  int steps = 20000;
+  double radius = 0.025, tilt = 65;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string a = argv[i];
+    if (a == "--hand") name = argv[i + 1];
+    if (a == "--seed") seed = std::stoull(argv[i + 1]);
+    if (a == "--steps") steps = std::stoi(argv[i + 1]);
+    if (a == "--radius") radius = std::stod(argv[i + 1]) * 1e-3;
+    if (a == "--tilt") tilt = std::stod(argv[i + 1]);
+  }
+  const LoadedScenario model = LoadScenario(name, "", ModelSearchPath());
+  const HandModel& hand = model.hand;
+  const Vector3d gravity = 9.81 * Vector3d(0, std::cos(tilt * kPi / 180), std::sin(tilt * kPi / 180));
+  RandomStream random(seed, 0);
+
+  const auto TipTarget = [&](const Candidate& c, int f, const Vector3d& direction, double distance) {
+    return Vector3d(c.p_WO + direction * (distance + hand.fingers[f].tip_radius));
+  };
+  const auto Direction = [&](const Candidate& c, int f) {
+    KinematicsData data;
+    ForwardKinematics(hand, c.q, &data);
+    return Vector3d((FingertipCentre(hand, data, f) - c.p_WO).normalized());
+  };
+
+  Candidate best;
+  best.q = 0.5 * (model.scenario.q_preshape + model.scenario.q_closed);
+  best.p_WO = model.scenario.X_WO.translation();
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    SolveTip(hand, f, TipTarget(best, f, Direction(best, f), radius), &best.q);
+  Evaluate(hand, radius, gravity, &best);
+  std::fprintf(stderr, "start: score %.3f\n", best.score);
+
+  for (int step = 0; step < steps; ++step) {
+    const double scale = std::pow(0.1, 1.5 * step / steps);
+    Candidate c = best;
+    std::vector<Vector3d> directions;
+    for (int f = 0; f < hand.num_fingers(); ++f) directions.push_back(Direction(c, f));
+    if (random.Uniform() < 0.3) c.p_WO += 0.004 * scale * random.Normal3();
+    for (int f = 0; f < hand.num_fingers(); ++f) {
+      if (random.Uniform() < 0.4) directions[f] = (directions[f] + 0.25 * scale * random.Normal3()).normalized();
+      if (random.Uniform() < 0.3)
+        for (int j : hand.fingers[f].joints) {
+          c.q[j] += 0.2 * scale * random.Normal();
+          c.q[j] = std::clamp(c.q[j], hand.joints[j].lower, hand.joints[j].upper);
+        }
+    }
+    bool reached = true;
+    for (int f = 0; f < hand.num_fingers() && reached; ++f)
+      reached = SolveTip(hand, f, TipTarget(c, f, directions[f], radius), &c.q);
+    if (!reached) continue;
+    Evaluate(hand, radius, gravity, &c);
+    if (c.score > best.score) best = c;
+  }
+
+  // The way in: every tip on the straight line through the object's centre.
+  Candidate open = best, closed = best;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const Vector3d direction = Direction(best, f);
+    for (double d = 0; d <= 0.012; d += 0.001)
+      if (!SolveTip(hand, f, TipTarget(best, f, direction, radius - d), &closed.q)) break;
+    for (double d = 0; d <= 0.018; d += 0.001)
+      if (!SolveTip(hand, f, TipTarget(best, f, direction, radius + d), &open.q)) break;
+  }
+  Evaluate(hand, radius, gravity, &open);
+  Evaluate(hand, radius, gravity, &closed);
+  std::printf("# posture --hand %s --seed %llu --steps %d --radius %g --tilt %g\n# score %.3f, clearance %.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, load margin without",
+              name.c_str(), static_cast<unsigned long long>(seed), steps, radius * 1e3, tilt, best.score,
+              best.clearance * 1e3, open.clearance * 1e3, closed.clearance * 1e3, best.margin, best.sigma);
+  for (int f = 0; f < hand.num_fingers(); ++f) std::printf(" %s %.2f N", hand.fingers[f].name.c_str(), best.rho[f]);
+  std::printf("\n#");
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const Vector3d d = Direction(best, f);
+    std::printf(" %s (%.2f %.2f %.2f)", hand.fingers[f].name.c_str(), d.x(), d.y(), d.z());
+  }
+  std::printf("\n[object_pose]\nposition_m = [%.5f, %.5f, %.5f]\n", best.p_WO.x(), best.p_WO.y(), best.p_WO.z());
+  for (const auto& [table, c] : {std::pair{"q_preshape_deg", &open}, std::pair{"q_closed_deg", &closed}}) {
+    std::printf("\n[%s]\n", table);
+    for (int j = 0; j < hand.num_joints(); ++j)
+      std::printf("%s = %.2f\n", hand.joints[j].name.c_str(), c->q[j] * 180 / kPi);
+  }
+}
