@@ -9,9 +9,9 @@
 namespace regrasp {
 
 struct GraspContact {
-  Vector3d position = Vector3d::Zero();       ///< from the centre about which moments are taken [m]
-  Vector3d inward_normal = Vector3d::UnitZ(); ///< unit, into the object
-  double mu = 0.8;                            ///< friction coefficient
+  Vector3d position = Vector3d::Zero();  ///< from the centre about which moments are taken [m]
+  Vector3d inward_normal = Vector3d::UnitZ();  ///< unit, into the object
+  double mu = 0.8;                             ///< friction coefficient
 };
 
 /// Contacts of one grasp; larger grasps (evaluate FILE) pass a std::vector of the same element.
