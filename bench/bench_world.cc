@@ -20,6 +20,7 @@
 #include "core/hand/kinematics.h"
 #include "core/hand/scenario.h"
 #include "core/world/world.h"
+#include "tests/physics/grasp_posture.h"
 
 namespace regrasp {
 namespace {
@@ -43,36 +44,23 @@ struct Candidate {
   WorldConfig config;
 };
 
-// The posture of PHYSICS.md in which all five fingers touch a 5 cm sphere.
-JointVector GraspPosture(const HandModel& hand) {
-  static const std::map<std::string, double> degrees = {
-      {"FFJ4", -8.51}, {"FFJ3", 12.01}, {"FFJ2", 78.84}, {"FFJ1", 35.73}, {"MFJ4", -12.48},
-      {"MFJ3", 5.57},  {"MFJ2", 79.82}, {"MFJ1", 41.56}, {"RFJ4", 15.16}, {"RFJ3", 8.69},
-      {"RFJ2", 79.45}, {"RFJ1", 29.75}, {"LFJ5", 39.74}, {"LFJ4", -1.27}, {"LFJ3", -2.20},
-      {"LFJ2", 25.79}, {"LFJ1", 78.75}, {"THJ5", 8.14},  {"THJ4", 62.62}, {"THJ3", 9.03},
-      {"THJ2", 22.12}, {"THJ1", 48.50}};
-  JointVector q(hand.num_joints());
-  for (int i = 0; i < hand.num_joints(); ++i) q[i] = degrees.at(hand.joints[i].name) / 57.29577951;
-  return q;
-}
-
 class Run {
  public:
   Run(const LoadedScenario& s, const Candidate& candidate, const Options& options)
       : s_(s),
         options_(options),
-        world_(s.hand, s.object, candidate.config, GraspPosture(s.hand), s.scenario.X_WO, 1),
+        world_(s.hand, s.object, candidate.config, GraspPosture(s.hand), GraspObjectPose(), 1),
         rest_(GraspPosture(s.hand)),
         noise_(JointVector::Zero(s.hand.num_joints())),
         random_(7, 0) {
-    world_.SetGravity(s.scenario.gravity_W);
+    world_.SetGravity(GraspGravity());
     world_.MeasureStages(true);
   }
 
   bool Tick() {
     const WorldState& now = world_.state();
     ForwardKinematics(s_.hand, now.q, &kinematics_);
-    JointVector torque = GravityTorque(s_.hand, kinematics_, s_.scenario.gravity_W);
+    JointVector torque = GravityTorque(s_.hand, kinematics_, GraspGravity());
     for (int i = 0; i < noise_.size(); ++i)
       noise_[i] += kFilter * (options_.noise_deg / 57.29577951 * random_.Normal() - noise_[i]);
     // The springs creep while the fingers close on an object of whatever size.
@@ -98,7 +86,7 @@ class Run {
                 1e6 * Median(collide_), 1e6 * Median(step_), 1e6 * Median(total_), ForceSd(),
                 ForceSd() / exact_sd, 1e6 * drift_, std::sqrt(rate_ / samples_),
                 double(contacts_) / samples_,
-                1e3 * (world_.state().p_WO - s_.scenario.X_WO.translation()).norm(),
+                1e3 * (world_.state().p_WO - GraspObjectPose().translation()).norm(),
                 world_.fault_message());
   }
 

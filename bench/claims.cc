@@ -1,10 +1,11 @@
-// Measures what the README claims, straight on the session (no daemon): every table names this command.
+// Measures what the README claims, straight on the session (no daemon): every table names this
+// command.
 //   claims hold      [--seeds N] [--first S] [--seconds T]   six gravity directions
 //   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg
 //   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
-// Common: --noise PRESET --object NAME --set NAME=VALUE (repeatable) --exact --rows (a line per trial).
-// Trials run in two processes (--jobs N); each is reproducible alone from its seed.
+// Common: --noise PRESET --object NAME --set NAME=VALUE (repeatable) --exact --rows (a line per
+// trial). Trials run in two processes (--jobs N); each is reproducible alone from its seed.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -27,7 +28,8 @@ using namespace regrasp;
 namespace {
 
 struct Options {
-  std::string what, noise = "paper", object, criterion = "manipulability", estimator = "least_squares", finger;
+  std::string what, noise = "paper", object, criterion = "manipulability",
+                    estimator = "least_squares", finger;
   int seeds = 5, jobs = 2;
   std::uint64_t first = 1;
   double seconds = 60;
@@ -110,7 +112,7 @@ std::vector<Row> Parallel(int n, int jobs, const std::function<Row(int)>& trial)
     while (std::fgets(line, sizeof(line), in)) {
       char* p = line;
       const int k = static_cast<int>(std::strtol(p, &p, 10));
-      for (char* end = p; ; p = end) {
+      for (char* end = p;; p = end) {
         const double v = std::strtod(p, &end);
         if (end == p) break;
         rows[k].push_back(v);
@@ -118,7 +120,8 @@ std::vector<Row> Parallel(int n, int jobs, const std::function<Row(int)>& trial)
     }
     std::fclose(in);
   }
-  while (wait(nullptr) > 0) {}
+  while (wait(nullptr) > 0) {
+  }
   return rows;
 }
 
@@ -127,9 +130,12 @@ double Mean(const std::vector<double>& v) {
   for (double x : v) sum += x;
   return v.empty() ? 0 : sum / static_cast<double>(v.size());
 }
-double Max(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); }
+double Max(const std::vector<double>& v) {
+  return v.empty() ? 0 : *std::max_element(v.begin(), v.end());
+}
 
-/// {held, max deviation mm, rms mm, mean force residual / weight, foreign contacts, largest link-link count}
+/// {held, max deviation mm, rms mm, mean force residual / weight, foreign contacts, largest
+/// link-link count}
 Row HoldTrial(Session& session, double seconds) {
   if (!Grasp(session)) return {kFailed, 0, 0, 0, 0, 0};
   const Vector3d p0 = session.truth().p_WO;
@@ -152,15 +158,22 @@ Row HoldTrial(Session& session, double seconds) {
   const Vector3d mean_force = force / ticks;
   const double residual =
       (mean_force + session.world().mass_kg() * session.world().gravity_W()).norm() / weight;
-  return {session.state() == SessionState::kHolding ? 1.0 : 0.0, worst * 1e3,
-          std::sqrt(square / ticks) * 1e3, residual, foreign, links};
+  return {session.state() == SessionState::kHolding ? 1.0 : 0.0,
+          worst * 1e3,
+          std::sqrt(square / ticks) * 1e3,
+          residual,
+          foreign,
+          links};
 }
 
 void PrintHold(const char* label, const std::vector<Row>& rows) {
   int held = 0, failed = 0;
   std::vector<double> worst, rms, residual, foreign, links;
   for (const Row& r : rows) {
-    if (r.empty() || r[0] == kFailed) { ++failed; continue; }
+    if (r.empty() || r[0] == kFailed) {
+      ++failed;
+      continue;
+    }
     held += r[0] == 1.0;
     worst.push_back(r[1]);
     rms.push_back(r[2]);
@@ -168,17 +181,18 @@ void PrintHold(const char* label, const std::vector<Row>& rows) {
     foreign.push_back(r[4]);
     links.push_back(r[5]);
   }
-  std::printf("%-16s held %2d/%-2zu  not grasped %d  max deviation %5.2f mm  rms %5.2f mm  "
-              "force balance %5.2f %%  foreign contacts %.0f  link-link %.0f\n",
-              label, held, rows.size(), failed, Max(worst), Mean(rms), 100 * Max(residual), Max(foreign),
-              Max(links));
+  std::printf(
+      "%-16s held %2d/%-2zu  not grasped %d  max deviation %5.2f mm  rms %5.2f mm  "
+      "force balance %5.2f %%  foreign contacts %.0f  link-link %.0f\n",
+      label, held, rows.size(), failed, Max(worst), Mean(rms), 100 * Max(residual), Max(foreign),
+      Max(links));
   std::fflush(stdout);
 }
 
 int Hold(const Options& o) {
   const std::pair<const char*, Vector3d> directions[] = {
-      {"gravity +x", {9.81, 0, 0}}, {"gravity -x", {-9.81, 0, 0}}, {"gravity +y", {0, 9.81, 0}},
-      {"gravity -y", {0, -9.81, 0}}, {"gravity +z", {0, 0, 9.81}}, {"gravity -z", {0, 0, -9.81}}};
+      {"gravity +x", {9.81, 0, 0}},  {"gravity -x", {-9.81, 0, 0}}, {"gravity +y", {0, 9.81, 0}},
+      {"gravity -y", {0, -9.81, 0}}, {"gravity +z", {0, 0, 9.81}},  {"gravity -z", {0, 0, -9.81}}};
   for (const auto& [label, gravity] : directions) {
     const auto rows = Parallel(o.seeds, o.jobs, [&, g = gravity](int k) {
       SessionConfig config = MakeConfig(o, o.first + k, o.object);
@@ -215,8 +229,8 @@ int Explore(const Options& o) {
       c.type = CommandType::kExplore;
       c.finger = finger;
       c.seed = o.first + k;
-      for (Criterion criterion : {Criterion::kManipulability, Criterion::kStability, Criterion::kSwitched,
-                                  Criterion::kCombined})
+      for (Criterion criterion : {Criterion::kManipulability, Criterion::kStability,
+                                  Criterion::kSwitched, Criterion::kCombined})
         if (Name(criterion) == o.criterion) c.criterion = criterion;
       c.estimator = o.estimator == "secant" ? Estimator::kSecant : Estimator::kLeastSquares;
       const Vector3d p0 = session.truth().p_WO;
@@ -235,11 +249,17 @@ int Explore(const Options& o) {
     std::vector<double> gain, cycles, moved;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Row& r = rows[k];
-      if (r.empty() || r[0] == kFailed) { ++failed; continue; }
+      if (r.empty() || r[0] == kFailed) {
+        ++failed;
+        continue;
+      }
       if (o.rows) {
-        std::printf("  seed %llu done %.0f reason %s phi %.4f -> %.4f path %.1f mm cycles %.0f dropped %.0f moved %.2f mm\n",
-                    static_cast<unsigned long long>(o.first + k), r[0],
-                    Name(static_cast<ExploreReason>(static_cast<int>(r[1]))).data(), r[2], r[3], r[4], r[5], r[6], r[7]);
+        std::printf(
+            "  seed %llu done %.0f reason %s phi %.4f -> %.4f path %.1f mm cycles %.0f dropped "
+            "%.0f moved %.2f mm\n",
+            static_cast<unsigned long long>(o.first + k), r[0],
+            Name(static_cast<ExploreReason>(static_cast<int>(r[1]))).data(), r[2], r[3], r[4], r[5],
+            r[6], r[7]);
       }
       rose += r[3] > r[2] && r[6] == 0;
       dropped += r[6] != 0;
@@ -248,9 +268,11 @@ int Explore(const Options& o) {
       cycles.push_back(r[5]);
       moved.push_back(r[7]);
     }
-    std::printf("%-8s phi rose %2d/%-2zu  dropped %d  not grasped %d  converged %d  gain mean %+.1f %%  "
-                "cycles mean %.0f  object moved max %.2f mm\n",
-                name.c_str(), rose, rows.size(), dropped, failed, converged, 100 * Mean(gain), Mean(cycles), Max(moved));
+    std::printf(
+        "%-8s phi rose %2d/%-2zu  dropped %d  not grasped %d  converged %d  gain mean %+.1f %%  "
+        "cycles mean %.0f  object moved max %.2f mm\n",
+        name.c_str(), rose, rows.size(), dropped, failed, converged, 100 * Mean(gain), Mean(cycles),
+        Max(moved));
     std::fflush(stdout);
     total_rose += rose;
     total += static_cast<int>(rows.size());
@@ -265,10 +287,13 @@ int Repeat(const Options& o) {
     Session session(MakeConfig(o, o.first, o.object));
     Grasp(session);
     const int ticks = static_cast<int>(o.seconds * 1000);
-    while (session.tick() < ticks) { session.Tick(); session.TakeEvents(); }
+    while (session.tick() < ticks) {
+      session.Tick();
+      session.TakeEvents();
+    }
     h = session.StateHash();
-    std::printf("state hash after %.0f s: %016llx (%s)\n", o.seconds, static_cast<unsigned long long>(h),
-                Name(session.state()).data());
+    std::printf("state hash after %.0f s: %016llx (%s)\n", o.seconds,
+                static_cast<unsigned long long>(h), Name(session.state()).data());
   }
   return hash[0] == hash[1] ? 0 : 1;
 }
@@ -281,30 +306,49 @@ int main(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
     const std::string a = argv[i];
     auto next = [&]() -> std::string {
-      if (++i >= argc) { std::fprintf(stderr, "claims: %s needs a value\n", a.c_str()); std::exit(2); }
+      if (++i >= argc) {
+        std::fprintf(stderr, "claims: %s needs a value\n", a.c_str());
+        std::exit(2);
+      }
       return argv[i];
     };
-    if (a == "--seeds") o.seeds = std::stoi(next());
-    else if (a == "--first") o.first = std::stoull(next());
-    else if (a == "--seconds") o.seconds = std::stod(next());
-    else if (a == "--noise") o.noise = next();
-    else if (a == "--object") o.object = next();
-    else if (a == "--criterion") o.criterion = next();
-    else if (a == "--estimator") o.estimator = next();
-    else if (a == "--finger") o.finger = next();
-    else if (a == "--jobs") o.jobs = std::stoi(next());
-    else if (a == "--exact") o.exact = true;
-    else if (a == "--rows") o.rows = true;
+    if (a == "--seeds")
+      o.seeds = std::stoi(next());
+    else if (a == "--first")
+      o.first = std::stoull(next());
+    else if (a == "--seconds")
+      o.seconds = std::stod(next());
+    else if (a == "--noise")
+      o.noise = next();
+    else if (a == "--object")
+      o.object = next();
+    else if (a == "--criterion")
+      o.criterion = next();
+    else if (a == "--estimator")
+      o.estimator = next();
+    else if (a == "--finger")
+      o.finger = next();
+    else if (a == "--jobs")
+      o.jobs = std::stoi(next());
+    else if (a == "--exact")
+      o.exact = true;
+    else if (a == "--rows")
+      o.rows = true;
     else if (a == "--set") {
       const std::string s = next();
       const auto eq = s.find('=');
       o.set.emplace_back(s.substr(0, eq), std::stod(s.substr(eq + 1)));
-    } else { std::fprintf(stderr, "claims: unknown option %s\n", a.c_str()); return 2; }
+    } else {
+      std::fprintf(stderr, "claims: unknown option %s\n", a.c_str());
+      return 2;
+    }
   }
   if (o.what == "hold") return Hold(o);
   if (o.what == "objects") return Objects(o);
   if (o.what == "explore") return Explore(o);
   if (o.what == "repeat") return Repeat(o);
-  std::fprintf(stderr, "usage: claims hold|objects|explore|repeat [options]; see the head of bench/claims.cc\n");
+  std::fprintf(
+      stderr,
+      "usage: claims hold|objects|explore|repeat [options]; see the head of bench/claims.cc\n");
   return 2;
 }

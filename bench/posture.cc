@@ -1,9 +1,11 @@
 // Searches the generic preshape and closed posture of a hand for its scenario file.
 //   posture [--hand NAME] [--seed S] [--steps N] [--radius MM] [--tilt DEG]
-// Random hill climbing over object position, contact directions and redundant joint angles. A posture is
-// good when the grasp without each finger in turn (the thumb above all) keeps a load margin, joints are
-// far from their limits, no finger is near singular and links keep clear of each other. Prints TOML.
+// Random hill climbing over object position, contact directions and redundant joint angles. A
+// posture is good when the grasp without each finger in turn (the thumb above all) keeps a load
+// margin, joints are far from their limits, no finger is near singular and links keep clear of each
+// other. Prints TOML.
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,8 +17,6 @@
 #include "core/hand/kinematics.h"
 #include "core/hand/scenario.h"
 #include "core/quality/load_margin.h"
-
-#include <Eigen/SVD>
 
 using namespace regrasp;
 
@@ -32,7 +32,8 @@ struct Candidate {
   double clearance = 0, margin = 0, sigma = 0;
 };
 
-/// Moves the tip of `finger` to `target` from `q`; false when it does not get there inside the limits.
+/// Moves the tip of `finger` to `target` from `q`; false when it does not get there inside the
+/// limits.
 bool SolveTip(const HandModel& hand, int finger, const Vector3d& target, JointVector* q) {
   KinematicsData data;
   for (int k = 0; k < 60; ++k) {
@@ -46,13 +47,15 @@ bool SolveTip(const HandModel& hand, int finger, const Vector3d& target, JointVe
     const auto& joints = hand.fingers[finger].joints;
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const Joint& joint = hand.joints[joints[i]];
-      (*q)[joints[i]] = std::clamp((*q)[joints[i]] + dq[static_cast<Eigen::Index>(i)], joint.lower, joint.upper);
+      (*q)[joints[i]] =
+          std::clamp((*q)[joints[i]] + dq[static_cast<Eigen::Index>(i)], joint.lower, joint.upper);
     }
   }
   return false;
 }
 
-double SegmentDistance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0, const Vector3d& b1) {
+double SegmentDistance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
+                       const Vector3d& b1) {
   double best = 1e9;  // sampled: 0.3 mm is plenty here
   for (int i = 0; i <= 12; ++i) {
     const Vector3d p = a0 + (a1 - a0) * (i / 12.0);
@@ -65,7 +68,8 @@ double SegmentDistance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b
 }
 
 /// Smallest gap between links of different fingers, and of links that are not tips to the object.
-double Clearance(const HandModel& hand, const KinematicsData& data, const Vector3d& p_WO, double radius) {
+double Clearance(const HandModel& hand, const KinematicsData& data, const Vector3d& p_WO,
+                 double radius) {
   double gap = 1e9;
   std::vector<int> finger_of(hand.links.size(), -1);
   for (int f = 0; f < hand.num_fingers(); ++f)
@@ -80,8 +84,9 @@ double Clearance(const HandModel& hand, const KinematicsData& data, const Vector
         if (finger_of[b] < 0 || finger_of[a] == finger_of[b]) continue;
         for (const Shape& sb : hand.links[b].shapes) {
           if (sb.kind != Shape::Kind::kCapsule) continue;
-          gap = std::min(gap, SegmentDistance(a0, a1, data.X_WL[b] * sb.a_L, data.X_WL[b] * sb.b_L) -
-                                  sa.radius - sb.radius);
+          gap =
+              std::min(gap, SegmentDistance(a0, a1, data.X_WL[b] * sb.a_L, data.X_WL[b] * sb.b_L) -
+                                sa.radius - sb.radius);
         }
       }
     }
@@ -103,7 +108,8 @@ void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Can
   for (int j = 0; j < hand.num_joints(); ++j) {
     const Joint& joint = hand.joints[j];
     const double half = 0.5 * (joint.upper - joint.lower);
-    c->margin = std::min(c->margin, 1.0 - std::abs(c->q[j] - 0.5 * (joint.upper + joint.lower)) / half);
+    c->margin =
+        std::min(c->margin, 1.0 - std::abs(c->q[j] - 0.5 * (joint.upper + joint.lower)) / half);
   }
   std::vector<GraspContact> contacts;
   c->sigma = 1e9;
@@ -125,9 +131,8 @@ void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Can
     if (without < last) worst_other = std::min(worst_other, c->rho.back());
   }
   c->score = 2.0 * std::min(c->rho[last], 0.3) / 0.3 + 1.0 * std::min(c->rho[last], 1.5) +
-             1.0 * std::min(worst_other, 1.0) +
-             1.5 * std::min(c->margin, 0.5) / 0.5 + 1.0 * std::min(c->sigma, 0.03) / 0.03 +
-             std::min(0.0, (c->clearance - 0.005) / 0.001);
+             1.0 * std::min(worst_other, 1.0) + 1.5 * std::min(c->margin, 0.5) / 0.5 +
+             1.0 * std::min(c->sigma, 0.03) / 0.03 + std::min(0.0, (c->clearance - 0.005) / 0.001);
 }
 
 }  // namespace
@@ -147,10 +152,12 @@ int main(int argc, char** argv) {
   }
   const LoadedScenario model = LoadScenario(name, "", ModelSearchPath());
   const HandModel& hand = model.hand;
-  const Vector3d gravity = 9.81 * Vector3d(0, std::cos(tilt * kPi / 180), std::sin(tilt * kPi / 180));
+  const Vector3d gravity =
+      9.81 * Vector3d(0, std::cos(tilt * kPi / 180), std::sin(tilt * kPi / 180));
   RandomStream random(seed, 0);
 
-  const auto TipTarget = [&](const Candidate& c, int f, const Vector3d& direction, double distance) {
+  const auto TipTarget = [&](const Candidate& c, int f, const Vector3d& direction,
+                             double distance) {
     return Vector3d(c.p_WO + direction * (distance + hand.fingers[f].tip_radius));
   };
   const auto Direction = [&](const Candidate& c, int f) {
@@ -174,7 +181,8 @@ int main(int argc, char** argv) {
     for (int f = 0; f < hand.num_fingers(); ++f) directions.push_back(Direction(c, f));
     if (random.Uniform() < 0.3) c.p_WO += 0.004 * scale * random.Normal3();
     for (int f = 0; f < hand.num_fingers(); ++f) {
-      if (random.Uniform() < 0.4) directions[f] = (directions[f] + 0.25 * scale * random.Normal3()).normalized();
+      if (random.Uniform() < 0.4)
+        directions[f] = (directions[f] + 0.25 * scale * random.Normal3()).normalized();
       if (random.Uniform() < 0.3)
         for (int j : hand.fingers[f].joints) {
           c.q[j] += 0.2 * scale * random.Normal();
@@ -200,17 +208,22 @@ int main(int argc, char** argv) {
   }
   Evaluate(hand, radius, gravity, &open);
   Evaluate(hand, radius, gravity, &closed);
-  std::printf("# posture --hand %s --seed %llu --steps %d --radius %g --tilt %g\n# score %.3f, clearance %.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, load margin without",
-              name.c_str(), static_cast<unsigned long long>(seed), steps, radius * 1e3, tilt, best.score,
-              best.clearance * 1e3, open.clearance * 1e3, closed.clearance * 1e3, best.margin, best.sigma);
-  for (int f = 0; f < hand.num_fingers(); ++f) std::printf(" %s %.2f N", hand.fingers[f].name.c_str(), best.rho[f]);
+  std::printf(
+      "# posture --hand %s --seed %llu --steps %d --radius %g --tilt %g\n# score %.3f, clearance "
+      "%.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, load margin without",
+      name.c_str(), static_cast<unsigned long long>(seed), steps, radius * 1e3, tilt, best.score,
+      best.clearance * 1e3, open.clearance * 1e3, closed.clearance * 1e3, best.margin, best.sigma);
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    std::printf(" %s %.2f N", hand.fingers[f].name.c_str(), best.rho[f]);
   std::printf("\n#");
   for (int f = 0; f < hand.num_fingers(); ++f) {
     const Vector3d d = Direction(best, f);
     std::printf(" %s (%.2f %.2f %.2f)", hand.fingers[f].name.c_str(), d.x(), d.y(), d.z());
   }
-  std::printf("\n[object_pose]\nposition_m = [%.5f, %.5f, %.5f]\n", best.p_WO.x(), best.p_WO.y(), best.p_WO.z());
-  for (const auto& [table, c] : {std::pair{"q_preshape_deg", &open}, std::pair{"q_closed_deg", &closed}}) {
+  std::printf("\n[object_pose]\nposition_m = [%.5f, %.5f, %.5f]\n", best.p_WO.x(), best.p_WO.y(),
+              best.p_WO.z());
+  for (const auto& [table, c] :
+       {std::pair{"q_preshape_deg", &open}, std::pair{"q_closed_deg", &closed}}) {
     std::printf("\n[%s]\n", table);
     for (int j = 0; j < hand.num_joints(); ++j)
       std::printf("%s = %.2f\n", hand.joints[j].name.c_str(), c->q[j] * 180 / kPi);

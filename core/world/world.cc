@@ -27,6 +27,12 @@ constexpr double kStopDamping = 0.05;
 // Anything faster is a simulation that has exploded [m/s, rad/s].
 constexpr double kMaxSpeed = 1e4;
 
+// Found by our own checks, outside ODE: the ODE world is still in order and can be destroyed.
+class WorldFault : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 Vector3d ToVector(const dReal* v) { return {v[0], v[1], v[2]}; }
 
 Matrix3d ToMatrix(const dReal* R) {
@@ -104,6 +110,7 @@ struct World::Impl {
   StageTimes times;
   bool measure = false;
   bool faulted = false;
+  bool abandoned = false;  // the fault was inside ODE
   char message[256] = "";
 };
 
@@ -128,11 +135,12 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
   dWorldSetCFM(world, config.joint_cfm);
   dWorldSetContactMaxCorrectingVel(world, dInfinity);
   dWorldSetAutoDisableFlag(world, 0);
-  // Room for every step there will be, so that no step allocates.
+  // Room for every step there will be, so that no step allocates: the exact step needs the square
+  // of the number of rows (300 rows with every contact there can be).
   dWorldStepReserveInfo reserve{};
   reserve.struct_size = sizeof(reserve);
   reserve.reserve_factor = 1.5f;
-  reserve.reserve_minimum = 4u << 20;
+  reserve.reserve_minimum = config.stepper == Stepper::kExact ? 4u << 20 : 1u << 20;
   dWorldSetStepMemoryReservationPolicy(world, &reserve);
   contact_group = dJointGroupCreate(0);
 
@@ -145,7 +153,7 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
 }
 
 World::Impl::~Impl() {
-  if (faulted) {
+  if (abandoned) {
     // Destroying a world that ODE has given up on fails again: leave it behind.
     if (collider) collider->Abandon();
     return;
@@ -199,12 +207,12 @@ void World::Impl::BuildObject(const Isometry3d& X_WO0) {
 }
 
 void World::Impl::CheckInputs() const {
-  if (torque.size() != hand.num_joints()) throw OdeError("wrong number of joint torques");
-  if (!torque.allFinite()) throw OdeError("joint torque is not finite");
-  if (!push_W.allFinite()) throw OdeError("push force is not finite");
-  if (!gravity_W.allFinite()) throw OdeError("gravity is not finite");
-  if (!(std::isfinite(mass) && mass > 0)) throw OdeError("object mass is not positive");
-  if (!(std::isfinite(friction) && friction > 0)) throw OdeError("friction is not positive");
+  if (torque.size() != hand.num_joints()) throw WorldFault("wrong number of joint torques");
+  if (!torque.allFinite()) throw WorldFault("joint torque is not finite");
+  if (!push_W.allFinite()) throw WorldFault("push force is not finite");
+  if (!gravity_W.allFinite()) throw WorldFault("gravity is not finite");
+  if (!(std::isfinite(mass) && mass > 0)) throw WorldFault("object mass is not positive");
+  if (!(std::isfinite(friction) && friction > 0)) throw WorldFault("friction is not positive");
 }
 
 void World::Impl::ApplyInputs() {
@@ -328,7 +336,7 @@ void World::Impl::ReadState() {
   bool good = state.p_WO.allFinite();
   for (int i = 0; i < hand.num_joints(); ++i) good = good && sane(state.qdot[i]);
   for (int k = 0; k < 3; ++k) good = good && sane(state.v_WO[k]) && sane(state.w_WO[k]);
-  if (!good) throw OdeError("the simulation has diverged");
+  if (!good) throw WorldFault("the simulation has diverged");
 }
 
 World::World(const HandModel& hand, const ObjectModel& object, const WorldConfig& config,
@@ -367,11 +375,14 @@ StepStatus World::Step() {
     const double t2 = w.measure ? Now() : 0;
     w.times = {t1 - t0, t2 - t1};
     return StepStatus::kOk;
-  } catch (const std::exception& e) {
-    w.faulted = true;
+  } catch (const WorldFault& e) {
     std::snprintf(w.message, sizeof(w.message), "%s", e.what());
-    return StepStatus::kFault;
+  } catch (const std::exception& e) {
+    w.abandoned = true;
+    std::snprintf(w.message, sizeof(w.message), "%s", e.what());
   }
+  w.faulted = true;
+  return StepStatus::kFault;
 }
 
 const char* World::fault_message() const { return impl_->message; }
