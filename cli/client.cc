@@ -24,8 +24,8 @@ sockaddr_un Address(const std::string& path) {
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof address.sun_path) {
     throw CliError(kUsage,
-                   fmt::format("socket path '{}' has {} bytes; allowed are 1 to {}", path, path.size(),
-                               sizeof address.sun_path - 1),
+                   fmt::format("socket path '{}' has {} bytes; allowed are 1 to {}", path,
+                               path.size(), sizeof address.sun_path - 1),
                    "regrasp -s /tmp/regrasp.sock status");
   }
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
@@ -82,7 +82,8 @@ Client::~Client() {
 }
 
 void Client::Lost() const {
-  throw CliError(kNoDaemon, fmt::format("the daemon on {} closed the connection", path_), "regrasp up");
+  throw CliError(kNoDaemon, fmt::format("the daemon on {} closed the connection", path_),
+                 "regrasp up");
 }
 
 void Client::Send(const std::string& line, Clock::time_point deadline) {
@@ -93,7 +94,8 @@ void Client::Send(const std::string& line, Clock::time_point deadline) {
       sent += static_cast<std::size_t>(n);
     } else if (errno == EAGAIN) {
       if (!WaitFor(fd_, POLLOUT, deadline)) {
-        throw CliError(kTimeout, fmt::format("the daemon on {} does not read", path_), "regrasp doctor");
+        throw CliError(kTimeout, fmt::format("the daemon on {} does not read", path_),
+                       "regrasp doctor");
       }
     } else if (errno == EPIPE || errno == ECONNRESET) {
       return;  // its last words, if any, are still to be read
@@ -163,8 +165,10 @@ Json Client::Call(const std::string& method, const Json& params, double timeout_
       const Json& error = message["error"];
       const int code = error.value("code", 0);
       std::string hint;
-      if (error.contains("data") && error["data"].is_object()) hint = error["data"].value("hint", "");
-      throw CliError(ExitCodeFor(code), error.value("message", "refused without a reason"), hint, code);
+      if (error.contains("data") && error["data"].is_object())
+        hint = error["data"].value("hint", "");
+      throw CliError(ExitCodeFor(code), error.value("message", "refused without a reason"), hint,
+                     code);
     }
     if (!message.contains("result")) {
       throw CliError(kProtocol, fmt::format("{} answered with neither result nor error", path_),

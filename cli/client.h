@@ -13,9 +13,9 @@ namespace regrasp::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// A connection to a daemon. Every function throws CliError: kNoDaemon when nobody listens or the daemon
-/// goes away, kTimeout, kProtocol when the answer is not JSON-RPC, and what ExitCodeFor() says when the
-/// daemon answers with an error.
+/// A connection to a daemon. Every function throws CliError: kNoDaemon when nobody listens or the
+/// daemon goes away, kTimeout, kProtocol when the answer is not JSON-RPC, and what ExitCodeFor()
+/// says when the daemon answers with an error.
 class Client {
  public:
   /// Connects to the socket at `path`; `timeout_s` [s] bounds the connection and is the default of
@@ -44,8 +44,8 @@ class Client {
   int fd_ = -1;
   long next_id_ = 1;
   std::string buffer_;
-  std::size_t scanned_ = 0;   ///< bytes of buffer_ known to hold no newline
-  std::deque<Json> events_;   ///< notifications that came before a reply
+  std::size_t scanned_ = 0;  ///< bytes of buffer_ known to hold no newline
+  std::deque<Json> events_;  ///< notifications that came before a reply
 };
 
 /// True if something accepts connections at `path`.

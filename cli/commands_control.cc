@@ -17,8 +17,9 @@ ExitCode Rotate(Context& context, const Invocation& invocation) {
   const Json& p = invocation.params;
   const auto given = p.contains("angle_rad") + p.contains("turns") + p.contains("continuous");
   if (given != 1) {
-    throw CliError(kUsage, fmt::format("rotate takes one of --angle, --turns and --continuous, not {}", given),
-                   "regrasp rotate --angle 90 --wait");
+    throw CliError(
+        kUsage, fmt::format("rotate takes one of --angle, --turns and --continuous, not {}", given),
+        "regrasp rotate --angle 90 --wait");
   }
   if (p.contains("continuous") && invocation.Has("wait")) {
     throw CliError(kUsage, "rotate --continuous never ends by itself: --wait makes no sense",
@@ -31,7 +32,9 @@ ExitCode Stop(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
     const Json& job = At(answer, "job");
-    context.out().Line(job.is_null() ? "nothing to stop" : fmt::format("job {} stopped; the hand keeps holding", Plain(job)));
+    context.out().Line(job.is_null()
+                           ? "nothing to stop"
+                           : fmt::format("job {} stopped; the hand keeps holding", Plain(job)));
   });
   return kOk;
 }
@@ -39,7 +42,9 @@ ExitCode Stop(Context& context, const Invocation& invocation) {
 ExitCode PauseOrResume(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    context.out().Line(fmt::format("{} at tick {}", At(answer, "paused") == true ? "paused" : "running", Plain(At(answer, "tick"))));
+    context.out().Line(fmt::format("{} at tick {}",
+                                   At(answer, "paused") == true ? "paused" : "running",
+                                   Plain(At(answer, "tick"))));
   });
   return kOk;
 }
@@ -47,13 +52,15 @@ ExitCode PauseOrResume(Context& context, const Invocation& invocation) {
 ExitCode Reset(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    context.out().Line(fmt::format("new run: object {}, seed {}", Plain(At(answer, "object")), Plain(At(answer, "seed"))));
+    context.out().Line(fmt::format("new run: object {}, seed {}", Plain(At(answer, "object")),
+                                   Plain(At(answer, "seed"))));
   });
   return kOk;
 }
 
 void PrintNoise(Output& out, const Json& noise) {
-  const auto line = [&](const char* what, const char* key, int digits, double scale, const char* unit) {
+  const auto line = [&](const char* what, const char* key, int digits, double scale,
+                        const char* unit) {
     out.Line(fmt::format("  {:<18}{:>8} {}", what, Fixed(At(noise, key), digits, scale), unit));
   };
   out.Line(fmt::format("noise preset {}", out.Paint(Plain(At(noise, "preset")), Style::kBold)));
@@ -71,9 +78,15 @@ ExitCode SendNoise(Context& context, const char* method, const Json& params) {
   return kOk;
 }
 
-ExitCode NoiseShow(Context& context, const Invocation&) { return SendNoise(context, "noise.get", Json::object()); }
-ExitCode NoisePreset(Context& context, const Invocation& invocation) { return SendNoise(context, "noise.set", invocation.params); }
-ExitCode NoiseOff(Context& context, const Invocation&) { return SendNoise(context, "noise.set", {{"preset", "off"}}); }
+ExitCode NoiseShow(Context& context, const Invocation&) {
+  return SendNoise(context, "noise.get", Json::object());
+}
+ExitCode NoisePreset(Context& context, const Invocation& invocation) {
+  return SendNoise(context, "noise.set", invocation.params);
+}
+ExitCode NoiseOff(Context& context, const Invocation&) {
+  return SendNoise(context, "noise.set", {{"preset", "off"}});
+}
 
 ExitCode NoiseSet(Context& context, const Invocation& invocation) {
   Json params = invocation.params;
@@ -82,14 +95,17 @@ ExitCode NoiseSet(Context& context, const Invocation& invocation) {
     params["object_position_m"] = pose[0] * 1e-3;
     params["object_rotation_rad"] = pose[1] / kDegrees;
   }
-  if (params.empty()) throw CliError(kUsage, "noise set: no level given", "regrasp noise set --position 1 --normal 2");
+  if (params.empty())
+    throw CliError(kUsage, "noise set: no level given",
+                   "regrasp noise set --position 1 --normal 2");
   return SendNoise(context, "noise.set", params);
 }
 
 ExitCode Push(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    context.out().Line(fmt::format("pushing with {} N for {} s", Vector(At(answer, "force_n"), 2), Plain(At(answer, "duration_s"))));
+    context.out().Line(fmt::format("pushing with {} N for {} s", Vector(At(answer, "force_n"), 2),
+                                   Plain(At(answer, "duration_s"))));
   });
   return kOk;
 }
@@ -99,7 +115,8 @@ std::string Range(const Json& p) {
 }
 
 void PrintParameter(Output& out, const Json& p) {
-  out.Line(fmt::format("{} = {} {}", out.Paint(Plain(At(p, "name")), Style::kBold), Plain(At(p, "value")), Plain(At(p, "unit"))));
+  out.Line(fmt::format("{} = {} {}", out.Paint(Plain(At(p, "name")), Style::kBold),
+                       Plain(At(p, "value")), Plain(At(p, "unit"))));
   out.Line(fmt::format("  range   {}", Range(p)));
   out.Line(fmt::format("  meaning {}", Plain(At(p, "description"))));
   out.Line(fmt::format("  source  {}", Plain(At(p, "source"))));
@@ -132,12 +149,15 @@ ExitCode ParamGetOrSet(Context& context, const Invocation& invocation) {
 
 std::vector<CommandSpec> ControlCommands() {
   CommandSpec preset = MethodCommand("noise.set", kGroup, NoisePreset,
-      {.positional = {"preset"}, .hidden = {"position_m", "normal_rad", "force_n", "joint_rad", "object_position_m", "object_rotation_rad"}});
+                                     {.positional = {"preset"},
+                                      .hidden = {"position_m", "normal_rad", "force_n", "joint_rad",
+                                                 "object_position_m", "object_rotation_rad"}});
   preset.words = "noise preset";
   preset.sentence = "set all noise levels to a preset";
   preset.args.front().required = true;
   CommandSpec noise_off{"noise off", kGroup, "switch all noise off", nullptr, {}, NoiseOff};
-  CommandSpec param_get = MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
+  CommandSpec param_get =
+      MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
   param_get.args.front().required = true;
   param_get.sentence = "value, unit, range and source of a parameter";
   std::vector<CommandSpec> commands = {
@@ -152,17 +172,26 @@ std::vector<CommandSpec> ControlCommands() {
       MethodCommand("noise.get", kGroup, NoiseShow),
       MethodCommand("noise.set", kGroup, NoiseSet,
                     {.hidden = {"preset", "object_position_m", "object_rotation_rad"},
-                     .extra = {{.key = "pose", .flags = "--pose", .metavar = "MM,DEG",
-                                .help = "object position and orientation, per axis", .default_text = "unchanged"}}}),
+                     .extra = {{.key = "pose",
+                                .flags = "--pose",
+                                .metavar = "MM,DEG",
+                                .help = "object position and orientation, per axis",
+                                .default_text = "unchanged"}}}),
       preset,
       noise_off,
       MethodCommand("push", kGroup, Push),
-      CommandSpec{"param list", kGroup, "every parameter; with -v its meaning and source", nullptr, {}, ParamList},
+      CommandSpec{"param list",
+                  kGroup,
+                  "every parameter; with -v its meaning and source",
+                  nullptr,
+                  {},
+                  ParamList},
       param_get,
       MethodCommand("param.set", kGroup, ParamGetOrSet, {.positional = {"name", "value"}}),
   };
   // Offered when the wire has it.
-  if (FindMethod("rotate") != nullptr) commands.insert(commands.begin() + 2, MethodCommand("rotate", kGroup, Rotate));
+  if (FindMethod("rotate") != nullptr)
+    commands.insert(commands.begin() + 2, MethodCommand("rotate", kGroup, Rotate));
   return commands;
 }
 

@@ -24,7 +24,8 @@ std::string JobSummary(const Json& job) {
     std::string text = fmt::format("{} {}", Plain(At(job, "id")), Plain(At(job, "method")));
     if (At(job, "finger").is_string()) text += " " + Plain(At(job, "finger"));
     text += ", " + Plain(At(job, "state"));
-    if (At(job, "state") == "running") text += fmt::format(" {} %", Fixed(At(job, "progress"), 0, 100));
+    if (At(job, "state") == "running")
+      text += fmt::format(" {} %", Fixed(At(job, "progress"), 0, 100));
     return text;
   }
   return job.is_null() ? "none" : Plain(job);
@@ -38,15 +39,18 @@ ExitCode Status(Context& context, const Invocation& invocation) {
       out.Line(fmt::format("{:<8}{}", name, value));
     };
     const std::string state = Plain(At(s, "state"));
-    line("state", out.Paint(state, StateStyle(state)) + (At(s, "paused") == true ? out.Paint(" (paused)", Style::kWarn) : ""));
-    line("time", fmt::format("{} s (tick {}), {} x real time", Fixed(At(s, "time_s"), 3), Plain(At(s, "tick")),
-                             Fixed(At(s, "real_time_factor"), 2)));
-    line("run", fmt::format("hand {}, object {}, seed {}", Plain(At(s, "hand")), Plain(At(s, "object")), Plain(At(s, "seed"))));
+    line("state", out.Paint(state, StateStyle(state)) +
+                      (At(s, "paused") == true ? out.Paint(" (paused)", Style::kWarn) : ""));
+    line("time", fmt::format("{} s (tick {}), {} x real time", Fixed(At(s, "time_s"), 3),
+                             Plain(At(s, "tick")), Fixed(At(s, "real_time_factor"), 2)));
+    line("run", fmt::format("hand {}, object {}, seed {}", Plain(At(s, "hand")),
+                            Plain(At(s, "object")), Plain(At(s, "seed"))));
     const Json& noise = At(s, "noise");
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
-    line("daemon", fmt::format("regraspd {} on {}, {} client{}", Plain(At(s, "version")), context.client().path(),
-                               Plain(At(s, "clients")), At(s, "clients") == 1 ? "" : "s"));
+    line("daemon", fmt::format("regraspd {} on {}, {} client{}", Plain(At(s, "version")),
+                               context.client().path(), Plain(At(s, "clients")),
+                               At(s, "clients") == 1 ? "" : "s"));
     if (context.options().verbose) {
       line("hash", Plain(At(s, "state_hash")));
       for (const char* key : {"speed", "output_dir", "pid", "uptime_s", "socket"}) {
@@ -73,9 +77,11 @@ void PrintContacts(Output& out, const Json& answer) {
   for (const auto& [name, f] : Named(At(answer, "fingers"), "finger")) {
     const bool touches = At(f, "in_contact") == true;
     const Json& force = At(f, "force_n");
-    table.Row({name, Plain(At(f, "role")), touches ? out.Paint(std::string(out.Tick()), Style::kGood) : std::string(out.Dash()),
-               touches ? Vector(At(f, "p_WC_m"), 1, 1e3) : "", touches ? Vector(At(f, "normal_W"), 2) : "",
-               Fixed(force, 2), out.Bar(force.is_number() ? force.get<double>() / 2 : 0, 10)});
+    table.Row({name, Plain(At(f, "role")),
+               touches ? out.Paint(std::string(out.Tick()), Style::kGood) : std::string(out.Dash()),
+               touches ? Vector(At(f, "p_WC_m"), 1, 1e3) : "",
+               touches ? Vector(At(f, "normal_W"), 2) : "", Fixed(force, 2),
+               out.Bar(force.is_number() ? force.get<double>() / 2 : 0, 10)});
   }
   out.Add(table.Text(out));
 }
@@ -94,12 +100,15 @@ ExitCode Joints(Context& context, const Invocation& invocation) {
     Table table({"JOINT", "FINGER", ">ANGLE [deg]", ">LOWER", "RANGE", ">UPPER", ">TORQUE [N m]"});
     for (const auto& j : joints) {
       double fraction = 0;
-      if (At(j, "lower_rad").is_number() && At(j, "upper_rad").is_number() && At(j, "angle_rad").is_number()) {
-        const double lower = At(j, "lower_rad"), upper = At(j, "upper_rad"), angle = At(j, "angle_rad");
+      if (At(j, "lower_rad").is_number() && At(j, "upper_rad").is_number() &&
+          At(j, "angle_rad").is_number()) {
+        const double lower = At(j, "lower_rad"), upper = At(j, "upper_rad"),
+                     angle = At(j, "angle_rad");
         fraction = upper > lower ? (angle - lower) / (upper - lower) : 0;
       }
-      table.Row({Plain(At(j, "name")), At(j, "finger").is_null() ? "" : Plain(At(j, "finger")), Fixed(At(j, "angle_rad"), 1, kDegrees),
-                 Fixed(At(j, "lower_rad"), 0, kDegrees), out.Bar(fraction, 12), Fixed(At(j, "upper_rad"), 0, kDegrees),
+      table.Row({Plain(At(j, "name")), At(j, "finger").is_null() ? "" : Plain(At(j, "finger")),
+                 Fixed(At(j, "angle_rad"), 1, kDegrees), Fixed(At(j, "lower_rad"), 0, kDegrees),
+                 out.Bar(fraction, 12), Fixed(At(j, "upper_rad"), 0, kDegrees),
                  Fixed(At(j, "torque_nm"), 3)});
     }
     out.Add(table.Text(out));
@@ -110,23 +119,32 @@ ExitCode Joints(Context& context, const Invocation& invocation) {
 void PrintQuality(Output& out, const Json& q) {
   const Json& stability = At(q, "stability");
   const Json& threshold = At(q, "threshold");
-  const bool low = stability.is_number() && threshold.is_number() && stability.get<double>() < threshold.get<double>();
-  out.Line(fmt::format("{:<22}{}  (threshold {})", "stability", out.Paint(Fixed(stability, 4), low ? Style::kWarn : Style::kGood), Fixed(threshold, 4)));
+  const bool low = stability.is_number() && threshold.is_number() &&
+                   stability.get<double>() < threshold.get<double>();
+  out.Line(fmt::format("{:<22}{}  (threshold {})", "stability",
+                       out.Paint(Fixed(stability, 4), low ? Style::kWarn : Style::kGood),
+                       Fixed(threshold, 4)));
   out.Line(fmt::format("{:<22}{}", "active criterion", Plain(At(q, "criterion"))));
-  out.Line(fmt::format("load margin {}{}{} N", out.Rho(), std::string(static_cast<std::size_t>(10 - DisplayWidth(out.Rho())), ' '), Fixed(At(q, "load_margin_n"), 3)));
+  out.Line(fmt::format("load margin {}{}{} N", out.Rho(),
+                       std::string(static_cast<std::size_t>(10 - DisplayWidth(out.Rho())), ' '),
+                       Fixed(At(q, "load_margin_n"), 3)));
   for (const char* name : {"min_singular_value", "epsilon", "sqrt_det", "isotropy", "volume"}) {
-    if (At(q, name).is_number()) out.Line(fmt::format("{:<22}{:.4g}", name, At(q, name).get<double>()));
+    if (At(q, name).is_number())
+      out.Line(fmt::format("{:<22}{:.4g}", name, At(q, name).get<double>()));
   }
   out.Line();
   const auto fingers = Named(At(q, "fingers"), "finger");
   double largest = 1e-9;
   for (const auto& [name, f] : fingers) {
-    if (At(f, "manipulability").is_number()) largest = std::max(largest, At(f, "manipulability").get<double>());
+    if (At(f, "manipulability").is_number())
+      largest = std::max(largest, At(f, "manipulability").get<double>());
   }
-  Table table({"FINGER", fmt::format(">MANIPULABILITY {}", out.Phi()), "", fmt::format(">{} WITHOUT IT [N]", out.Rho()), ">JOINT MARGIN [deg]"});
+  Table table({"FINGER", fmt::format(">MANIPULABILITY {}", out.Phi()), "",
+               fmt::format(">{} WITHOUT IT [N]", out.Rho()), ">JOINT MARGIN [deg]"});
   for (const auto& [name, f] : fingers) {
     const Json& phi = At(f, "manipulability");
-    table.Row({name, Fixed(phi, 3), out.Bar(phi.is_number() ? phi.get<double>() / largest : 0, 14), Fixed(At(f, "load_margin_without_n"), 3),
+    table.Row({name, Fixed(phi, 3), out.Bar(phi.is_number() ? phi.get<double>() / largest : 0, 14),
+               Fixed(At(f, "load_margin_without_n"), 3),
                Fixed(At(f, "joint_limit_margin_rad"), 1, kDegrees)});
   }
   out.Add(table.Text(out));
@@ -150,10 +168,12 @@ ExitCode Truth(Context& context, const Invocation& invocation) {
     out.Line(fmt::format("mass         {} g", Fixed(At(o, "mass_kg"), 1, 1e3)));
     out.Line(fmt::format("gravity      {} m/s2", Vector(At(answer, "gravity_W_m_s2"), 2)));
     out.Line();
-    Table table({"LINK", "FINGER", ">POSITION [mm]", ">NORMAL", ">FORCE ON OBJECT [N]", ">DEPTH [um]"});
+    Table table(
+        {"LINK", "FINGER", ">POSITION [mm]", ">NORMAL", ">FORCE ON OBJECT [N]", ">DEPTH [um]"});
     for (const auto& c : At(answer, "contacts")) {
-      table.Row({Plain(At(c, "link")), At(c, "finger").is_null() ? "" : Plain(At(c, "finger")), Vector(At(c, "p_WC_m"), 1, 1e3),
-                 Vector(At(c, "normal_W"), 2), Vector(At(c, "force_W_n"), 2), Fixed(At(c, "depth_m"), 0, 1e6)});
+      table.Row({Plain(At(c, "link")), At(c, "finger").is_null() ? "" : Plain(At(c, "finger")),
+                 Vector(At(c, "p_WC_m"), 1, 1e3), Vector(At(c, "normal_W"), 2),
+                 Vector(At(c, "force_W_n"), 2), Fixed(At(c, "depth_m"), 0, 1e6)});
     }
     if (At(answer, "contacts").empty()) {
       out.Line("nothing touches the object");
@@ -174,11 +194,16 @@ ExitCode JobList(Context& context, const Invocation& invocation) {
     for (const auto& job : jobs) {
       std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
       if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
-      if (At(job, "angle_rad").is_number()) result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
-      const auto tick = [&](const char* key) { return At(job, key).is_number() ? Plain(At(job, key)) : std::string(out.Dash()); };
+      if (At(job, "angle_rad").is_number())
+        result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
+      const auto tick = [&](const char* key) {
+        return At(job, key).is_number() ? Plain(At(job, key)) : std::string(out.Dash());
+      };
       const bool finger = At(job, "finger").is_string();
-      table.Row({Plain(At(job, "id")), Plain(At(job, "method")) + (finger ? " " + Plain(At(job, "finger")) : ""), Plain(At(job, "state")),
-                 Fixed(At(job, "progress"), 0, 100) + " %", tick("start_tick"), tick("end_tick"), result});
+      table.Row({Plain(At(job, "id")),
+                 Plain(At(job, "method")) + (finger ? " " + Plain(At(job, "finger")) : ""),
+                 Plain(At(job, "state")), Fixed(At(job, "progress"), 0, 100) + " %",
+                 tick("start_tick"), tick("end_tick"), result});
     }
     out.Add(table.Text(out));
   });
@@ -198,7 +223,8 @@ ExitCode JobWait(Context& context, const Invocation& invocation) {
 }
 
 std::string EventLine(Output& out, const Json& event) {
-  std::string text = fmt::format("{:>10} s  {:<14}", Fixed(At(event, "t_s"), 3), Plain(At(event, "kind")));
+  std::string text =
+      fmt::format("{:>10} s  {:<14}", Fixed(At(event, "t_s"), 3), Plain(At(event, "kind")));
   if (At(event, "finger").is_string()) text += fmt::format(" {:<7}", Plain(At(event, "finger")));
   if (At(event, "text").is_string()) text += " " + Plain(At(event, "text"));
   const std::string kind = Plain(At(event, "kind"));
@@ -212,25 +238,32 @@ std::string SampleLine(Output& out, const std::string& topic, const Json& sample
   const Json& time = At(sample, "time_s").is_null() ? At(sample, "t_s") : At(sample, "time_s");
   std::string text = fmt::format("{:>10} s", Fixed(time, 3));
   if (topic == "status") {
-    text += fmt::format("  {:<10} {:>7} x  job {}", Plain(At(sample, "state")), Fixed(At(sample, "real_time_factor"), 2), JobSummary(At(sample, "job")));
+    text += fmt::format("  {:<10} {:>7} x  job {}", Plain(At(sample, "state")),
+                        Fixed(At(sample, "real_time_factor"), 2), JobSummary(At(sample, "job")));
   } else if (topic == "quality") {
-    text += fmt::format("  stability {}  {} {} N  {}", Fixed(At(sample, "stability"), 3), out.Rho(), Fixed(At(sample, "load_margin_n"), 3), out.Phi());
-    for (const auto& [name, f] : Named(At(sample, "fingers"), "finger")) text += fmt::format(" {:.2}={}", name, Fixed(At(f, "manipulability"), 2));
+    text += fmt::format("  stability {}  {} {} N  {}", Fixed(At(sample, "stability"), 3), out.Rho(),
+                        Fixed(At(sample, "load_margin_n"), 3), out.Phi());
+    for (const auto& [name, f] : Named(At(sample, "fingers"), "finger"))
+      text += fmt::format(" {:.2}={}", name, Fixed(At(f, "manipulability"), 2));
   } else if (topic == "contacts") {
     for (const auto& [name, f] : Named(At(sample, "fingers"), "finger")) {
-      text += fmt::format("  {} {}", name, At(f, "in_contact") == true ? Fixed(At(f, "force_n"), 2) + " N" : std::string(out.Dash()));
+      text += fmt::format("  {} {}", name,
+                          At(f, "in_contact") == true ? Fixed(At(f, "force_n"), 2) + " N"
+                                                      : std::string(out.Dash()));
     }
   } else if (topic == "joints") {
     for (const auto& j : At(sample, "joints")) text += " " + Fixed(At(j, "angle_rad"), 0, kDegrees);
     text += " deg";
   } else {
     const Json& object = At(sample, "object");
-    text += fmt::format("  object {} mm  |{} contacts", Vector(At(object, "p_WO_m"), 2, 1e3), At(sample, "contacts").size());
+    text += fmt::format("  object {} mm  |{} contacts", Vector(At(object, "p_WO_m"), 2, 1e3),
+                        At(sample, "contacts").size());
   }
   return text;
 }
 
-ExitCode Stream(Context& context, const std::string& topic, const Json& params, std::int64_t count) {
+ExitCode Stream(Context& context, const std::string& topic, const Json& params,
+                std::int64_t count) {
   const Interruptible interruptible;
   context.client().Call("subscribe", params);
   // With --timeout a stream that falls silent is an error; without, it may be silent for ever.
@@ -238,8 +271,11 @@ ExitCode Stream(Context& context, const std::string& topic, const Json& params, 
   try {
     for (std::int64_t n = 0; count <= 0 || n < count; ++n) {
       const auto sample = context.client().NextEvent(patience);
-      if (!sample) throw CliError(kTimeout, fmt::format("nothing on '{}' for {:g} s", topic, patience), "regrasp status");
-      context.Print(*sample, [&] { context.out().Line(SampleLine(context.out(), topic, *sample)); });
+      if (!sample)
+        throw CliError(kTimeout, fmt::format("nothing on '{}' for {:g} s", topic, patience),
+                       "regrasp status");
+      context.Print(*sample,
+                    [&] { context.out().Line(SampleLine(context.out(), topic, *sample)); });
       context.out().Flush();
     }
   } catch (const CliError& error) {
@@ -253,7 +289,8 @@ std::int64_t Count(const Invocation& invocation) {
   if (!invocation.Has("count")) return 0;
   const double count = ParseNumber(invocation.Text("count"), "--count");
   if (count < 1 || count > 1e12 || count != static_cast<double>(static_cast<std::int64_t>(count))) {
-    throw CliError(kUsage, fmt::format("--count {}: allowed are whole numbers from 1", invocation.Text("count")));
+    throw CliError(kUsage, fmt::format("--count {}: allowed are whole numbers from 1",
+                                       invocation.Text("count")));
   }
   return static_cast<std::int64_t>(count);
 }
@@ -264,7 +301,8 @@ ExitCode Watch(Context& context, const Invocation& invocation) {
 
 ExitCode Events(Context& context, const Invocation& invocation) {
   if (invocation.Has("follow")) {
-    return Stream(context, "events", {{"topic", "events"}}, invocation.params.value("count", std::int64_t{0}));
+    return Stream(context, "events", {{"topic", "events"}},
+                  invocation.params.value("count", std::int64_t{0}));
   }
   const Json answer = context.Call(invocation);
   const Json& events = At(answer, "events");
@@ -277,11 +315,22 @@ ExitCode Events(Context& context, const Invocation& invocation) {
 }  // namespace
 
 std::vector<CommandSpec> InspectCommands() {
-  const Arg follow = {.key = "follow", .flags = "-f,--follow", .metavar = "", .kind = ArgKind::kFlag, .help = "print new events as they come, until interrupted"};
-  const Arg count = {.key = "count", .flags = "--count", .metavar = "N", .kind = ArgKind::kText, .help = "end after so many samples", .default_text = "until interrupted"};
-  CommandSpec wait = MethodCommand("job.wait", kGroup, JobWait, {.positional = {"id"}, .hidden = {"timeout_s"}});
+  const Arg follow = {.key = "follow",
+                      .flags = "-f,--follow",
+                      .metavar = "",
+                      .kind = ArgKind::kFlag,
+                      .help = "print new events as they come, until interrupted"};
+  const Arg count = {.key = "count",
+                     .flags = "--count",
+                     .metavar = "N",
+                     .kind = ArgKind::kText,
+                     .help = "end after so many samples",
+                     .default_text = "until interrupted"};
+  CommandSpec wait =
+      MethodCommand("job.wait", kGroup, JobWait, {.positional = {"id"}, .hidden = {"timeout_s"}});
   wait.sentence = "wait until a job has ended, print its record";
-  CommandSpec watch = MethodCommand("subscribe", kGroup, Watch, {.positional = {"topic"}, .extra = {count}});
+  CommandSpec watch =
+      MethodCommand("subscribe", kGroup, Watch, {.positional = {"topic"}, .extra = {count}});
   watch.sentence = "print a topic again and again";
   return {
       MethodCommand("status", kGroup, Status),

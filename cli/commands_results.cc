@@ -25,7 +25,9 @@ void Show(const std::string& file) {
   int status = 0;
   const int error = ::posix_spawnp(&pid, "xdg-open", nullptr, nullptr, argv, environ);
   if (error != 0 || ::waitpid(pid, &status, 0) != pid || status != 0) {
-    throw CliError(kFailed, fmt::format("cannot show {}: xdg-open {}", file, error != 0 ? std::strerror(error) : "failed"),
+    throw CliError(kFailed,
+                   fmt::format("cannot show {}: xdg-open {}", file,
+                               error != 0 ? std::strerror(error) : "failed"),
                    "open it with a viewer of yours");
   }
 }
@@ -39,8 +41,9 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
     std::error_code error;
     fs::copy_file(file, target, fs::copy_options::overwrite_existing, error);
     if (error) {
-      throw CliError(kIo, fmt::format("cannot copy {} to {}: {}", file, target.string(), error.message()),
-                     "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
+      throw CliError(
+          kIo, fmt::format("cannot copy {} to {}: {}", file, target.string(), error.message()),
+          "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
     }
     file = target;
     answer["path"] = fs::absolute(target).string();
@@ -55,11 +58,20 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
 }  // namespace
 
 std::vector<CommandSpec> ResultCommands() {
-  return {MethodCommand("plot", "Results", Plot,
-                        {.positional = {"name"}, .hidden = {"file"},
-                         .extra = {{.key = "output", .flags = "-o,--output", .metavar = "FILE", .help = "copy the picture there",
-                                    .default_text = "leave it in the daemon's output directory, print its path"},
-                                   {.key = "show", .flags = "--show", .metavar = "", .kind = ArgKind::kFlag, .help = "open it in a viewer"}}})};
+  return {MethodCommand(
+      "plot", "Results", Plot,
+      {.positional = {"name"},
+       .hidden = {"file"},
+       .extra = {{.key = "output",
+                  .flags = "-o,--output",
+                  .metavar = "FILE",
+                  .help = "copy the picture there",
+                  .default_text = "leave it in the daemon's output directory, print its path"},
+                 {.key = "show",
+                  .flags = "--show",
+                  .metavar = "",
+                  .kind = ArgKind::kFlag,
+                  .help = "open it in a viewer"}}})};
 }
 
 }  // namespace regrasp::cli

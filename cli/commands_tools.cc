@@ -33,7 +33,9 @@ ExitCode Call(Context& context, const Invocation& invocation) {
     }
   }
   const Json answer = context.client().Call(invocation.Text("method"), params);
-  context.Print(answer, [&] { context.out().Line(answer.dump(2, ' ', false, Json::error_handler_t::replace)); });
+  context.Print(answer, [&] {
+    context.out().Line(answer.dump(2, ' ', false, Json::error_handler_t::replace));
+  });
   return kOk;
 }
 
@@ -44,31 +46,40 @@ ExitCode Evaluate(Context& context, const Invocation& invocation) {
   if (!standard_input && !fs::exists(name, error)) {
     throw CliError(kNotFound, fmt::format("no file {}", name), "regrasp help evaluate");
   }
+  if (!standard_input && fs::is_directory(name, error)) {
+    throw CliError(kIo, name + " is a directory", "regrasp help evaluate");
+  }
   std::ifstream file;
   if (!standard_input) file.open(name);
   std::istream& in = standard_input ? std::cin : file;
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in.good() && !in.eof()) {
-    throw CliError(::access(name.c_str(), R_OK) == 0 ? kIo : kPermission, fmt::format("cannot read {}", name), "ls -l " + name);
+    throw CliError(::access(name.c_str(), R_OK) == 0 ? kIo : kPermission,
+                   fmt::format("cannot read {}", name), "ls -l " + name);
   }
   Json answer;
   try {
     answer = Json::parse(EvaluateJson(text));
   } catch (const std::invalid_argument& failure) {
-    throw CliError(kUsage, fmt::format("{}: {}", standard_input ? "standard input" : name, failure.what()), "regrasp help evaluate");
+    throw CliError(kUsage,
+                   fmt::format("{}: {}", standard_input ? "standard input" : name, failure.what()),
+                   "regrasp help evaluate");
   }
   context.Print(answer, [&] {
-    for (const auto& [key, value] : answer.items()) context.out().Line(fmt::format("{:<22}{}", key, Plain(value)));
+    for (const auto& [key, value] : answer.items())
+      context.out().Line(fmt::format("{:<22}{}", key, Plain(value)));
   });
   return kOk;
 }
 
 ExitCode Version(Context& context, const Invocation&) {
   Json answer = {{"version", REGRASP_VERSION}, {"protocol", kWireVersion}};
-  if (context.options().verbose) answer["daemon"] = context.client().Call("version", Json::object());
+  if (context.options().verbose)
+    answer["daemon"] = context.client().Call("version", Json::object());
   context.Print(answer, [&] {
     context.out().Line(fmt::format("regrasp {}", REGRASP_VERSION));
-    if (context.options().verbose) context.out().Line(fmt::format("regraspd {}", Plain(At(answer["daemon"], "version"))));
+    if (context.options().verbose)
+      context.out().Line(fmt::format("regraspd {}", Plain(At(answer["daemon"], "version"))));
   });
   return kOk;
 }
@@ -82,10 +93,18 @@ ExitCode Help(Context& context, const Invocation& invocation) {
     for (const auto* command : FindCommands(topic)) {
       Json args = Json::array();
       for (const auto& arg : command->args) {
-        args.push_back({{"key", arg.key}, {"flags", arg.flags}, {"metavar", arg.metavar}, {"required", arg.required}, {"help", arg.help}});
+        args.push_back({{"key", arg.key},
+                        {"flags", arg.flags},
+                        {"metavar", arg.metavar},
+                        {"required", arg.required},
+                        {"help", arg.help}});
       }
-      commands.push_back({{"words", command->words}, {"group", command->group}, {"sentence", command->sentence},
-                          {"method", command->method == nullptr ? Json() : Json(command->method->name)}, {"args", args}});
+      commands.push_back(
+          {{"words", command->words},
+           {"group", command->group},
+           {"sentence", command->sentence},
+           {"method", command->method == nullptr ? Json() : Json(command->method->name)},
+           {"args", args}});
     }
     context.out().AddJson({{"commands", commands}});
   } else {
@@ -137,7 +156,8 @@ Check CheckDaemon(Context& context) {
     const Json status = context.client().Call("status", Json::object());
     const std::string version = Plain(At(status, "version"));
     if (version != REGRASP_VERSION) {
-      return {"daemon", fmt::format("version {}, this is {}", version, REGRASP_VERSION), "regrasp down, then regrasp up", false};
+      return {"daemon", fmt::format("version {}, this is {}", version, REGRASP_VERSION),
+              "regrasp down, then regrasp up", false};
     }
     return {"daemon", fmt::format("answers, state {}", Plain(At(status, "state"))), "", true};
   } catch (const CliError& error) {
@@ -149,23 +169,32 @@ Check CheckDaemon(Context& context) {
 Check CheckModels() {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& place : {program / "../share/regrasp/models", program / "../../../models", fs::path(REGRASP_MODELS_DIR)}) {
-    if (fs::is_directory(place / "hands", ignored)) return {"models", fs::canonical(place, ignored).string(), "", true};
+  for (const fs::path& place : {program / "../share/regrasp/models", program / "../../../models",
+                                fs::path(REGRASP_MODELS_DIR)}) {
+    if (fs::is_directory(place / "hands", ignored))
+      return {"models", fs::canonical(place, ignored).string(), "", true};
   }
   return {"models", "no folder of models found", "regrasp up --models-dir DIR", false};
 }
 
 ExitCode Doctor(Context& context, const Invocation&) {
-  const std::vector<Check> checks = {CheckDaemonProgram(), CheckModels(), CheckSocket(context.options().socket), CheckDaemon(context)};
+  const std::vector<Check> checks = {CheckDaemonProgram(), CheckModels(),
+                                     CheckSocket(context.options().socket), CheckDaemon(context)};
   Json answer = {{"ok", true}, {"checks", Json::array()}};
   for (const auto& check : checks) {
-    answer["checks"].push_back({{"name", check.name}, {"ok", check.good}, {"finding", check.finding}, {"next", check.next}});
+    answer["checks"].push_back({{"name", check.name},
+                                {"ok", check.good},
+                                {"finding", check.finding},
+                                {"next", check.next}});
     if (!check.good) answer["ok"] = false;
   }
   context.Print(answer, [&] {
     Output& out = context.out();
     for (const auto& check : checks) {
-      out.Line(fmt::format("{} {:<9}{}", check.good ? out.Paint("ok  ", Style::kGood) : out.Paint("FAIL", Style::kBad), check.name, check.finding));
+      out.Line(
+          fmt::format("{} {:<9}{}",
+                      check.good ? out.Paint("ok  ", Style::kGood) : out.Paint("FAIL", Style::kBad),
+                      check.name, check.finding));
       if (!check.next.empty()) out.Line("              try: " + check.next);
     }
   });
@@ -176,21 +205,50 @@ ExitCode Doctor(Context& context, const Invocation&) {
 
 std::vector<CommandSpec> ToolCommands() {
   return {
-      {"evaluate", kGroup, "quality measures of a grasp given as JSON; needs no daemon", nullptr,
-       {{.key = "file", .flags = "", .metavar = "FILE",
-         .help = R"({"contacts": [{"position_m": [3], "normal": [3] inward, "mu": x}], "torque_scale_m": r, "cone_edges": m, "weight_n": [3]}; - reads standard input)",
+      {"evaluate",
+       kGroup,
+       "quality measures of a grasp given as JSON; needs no daemon",
+       nullptr,
+       {{.key = "file",
+         .flags = "",
+         .metavar = "FILE",
+         .help =
+             R"({"contacts": [{"position_m": [3], "normal": [3] inward, "mu": x}], "torque_scale_m": r, "cone_edges": m, "weight_n": [3]}; - reads standard input)",
          .required = true}},
        Evaluate},
-      {"call", kGroup, "send any method of the wire and print its answer", nullptr,
-       {{.key = "method", .flags = "", .metavar = "METHOD", .help = "for example describe", .required = true},
+      {"call",
+       kGroup,
+       "send any method of the wire and print its answer",
+       nullptr,
+       {{.key = "method",
+         .flags = "",
+         .metavar = "METHOD",
+         .help = "for example describe",
+         .required = true},
         {.key = "params", .flags = "", .metavar = "JSON", .help = "its parameters, an object"}},
        Call},
       {"doctor", kGroup, "check program, models, socket and daemon", nullptr, {}, Doctor},
-      {"completion", kGroup, "a completion script: eval \"$(regrasp completion bash)\"", nullptr,
-       {{.key = "shell", .flags = "", .metavar = "SHELL", .help = "the shell", .values = {"bash", "zsh", "fish"}, .required = true}},
+      {"completion",
+       kGroup,
+       "a completion script: eval \"$(regrasp completion bash)\"",
+       nullptr,
+       {{.key = "shell",
+         .flags = "",
+         .metavar = "SHELL",
+         .help = "the shell",
+         .values = {"bash", "zsh", "fish"},
+         .required = true}},
        Completion},
-      {"version", kGroup, "version of this program; with -v also of the daemon", nullptr, {}, Version},
-      {"help", kGroup, "this list, or help on a command", nullptr,
+      {"version",
+       kGroup,
+       "version of this program; with -v also of the daemon",
+       nullptr,
+       {},
+       Version},
+      {"help",
+       kGroup,
+       "this list, or help on a command",
+       nullptr,
        {{.key = "topic", .flags = "", .metavar = "COMMAND", .help = "a command"},
         {.key = "word", .flags = "", .metavar = "WORD", .help = "its second word: help noise set"}},
        Help},

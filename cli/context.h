@@ -22,7 +22,9 @@ class Context {
   /// The connection; made at the first call. Throws CliError(kNoDaemon, kPermission, kTimeout).
   Client& client();
   /// Calls the method of `invocation` with its parameters.
-  Json Call(const Invocation& invocation) { return client().Call(std::string(invocation.command->method->name), invocation.params); }
+  Json Call(const Invocation& invocation) {
+    return client().Call(std::string(invocation.command->method->name), invocation.params);
+  }
   /// Prints `answer`: as JSON or CSV when that is asked for, else with `human`.
   template <typename Human>
   void Print(const Json& answer, Human human) {
@@ -35,7 +37,8 @@ class Context {
       human();
     }
   }
-  /// Prints a table: JSON gets `answer`, CSV one line for each of `rows`, people what `human` writes.
+  /// Prints a table: JSON gets `answer`, CSV one line for each of `rows`, people what `human`
+  /// writes.
   template <typename Human>
   void PrintRows(const Json& answer, const std::vector<Json>& rows, Human human) {
     if (!options_.quiet && out_.format() == Format::kCsv) {

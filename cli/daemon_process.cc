@@ -21,7 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool Executable(const fs::path& path) { return ::access(path.c_str(), X_OK) == 0 && fs::is_regular_file(path); }
+bool Executable(const fs::path& path) {
+  return ::access(path.c_str(), X_OK) == 0 && fs::is_regular_file(path);
+}
 
 /// The last lines of a file, at most `count`.
 std::string Tail(const std::string& path, std::size_t count) {
@@ -66,24 +68,29 @@ std::string FindDaemon() {
     if (Executable(candidate)) return fs::absolute(candidate);
     begin = end + 1;
   }
-  throw CliError(kNotFound, fmt::format("no regraspd: neither {} nor in $PATH", beside.string()), "regrasp doctor");
+  throw CliError(kNotFound, fmt::format("no regraspd: neither {} nor in $PATH", beside.string()),
+                 "regrasp doctor");
 }
 
-StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments, double timeout_s) {
+StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
+                          double timeout_s) {
   const std::string daemon = FindDaemon();
   const fs::path directory = fs::absolute(socket).parent_path();
   std::error_code error;
   if (!fs::exists(directory)) {
     fs::create_directories(directory.parent_path(), error);
     if (::mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST) {
-      throw CliError(errno == EACCES ? kPermission : kIo, fmt::format("cannot make {}: {}", directory.string(), std::strerror(errno)),
+      throw CliError(errno == EACCES ? kPermission : kIo,
+                     fmt::format("cannot make {}: {}", directory.string(), std::strerror(errno)),
                      "regrasp -s PATH up");
     }
   }
   StartedDaemon started{0, socket, fs::path(socket).replace_extension(".log")};
-  const int log_fd = ::open(started.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+  const int log_fd =
+      ::open(started.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (log_fd < 0) {
-    throw CliError(errno == EACCES ? kPermission : kIo, fmt::format("cannot write the log {}: {}", started.log, std::strerror(errno)),
+    throw CliError(errno == EACCES ? kPermission : kIo,
+                   fmt::format("cannot write the log {}: {}", started.log, std::strerror(errno)),
                    "regrasp -s PATH up");
   }
   std::vector<std::string> words = {daemon, "--socket", socket};
@@ -94,7 +101,8 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
   started.pid = ::fork();
   if (started.pid == 0) Become(argv.data(), log_fd);
   ::close(log_fd);
-  if (started.pid < 0) throw CliError(kIo, fmt::format("cannot start {}: {}", daemon, std::strerror(errno)));
+  if (started.pid < 0)
+    throw CliError(kIo, fmt::format("cannot start {}: {}", daemon, std::strerror(errno)));
 
   const auto deadline = Deadline(timeout_s);
   try {
@@ -103,15 +111,19 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
       if (::waitpid(started.pid, &status, WNOHANG) == started.pid) {
         const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
         const std::string last = Tail(started.log, 3);
-        const auto exit_code = code == 2 || code == 5 || code == 6 || code == 74 || code == 77 ? static_cast<ExitCode>(code) : kFailed;
+        const auto exit_code = code == 2 || code == 5 || code == 6 || code == 74 || code == 77
+                                   ? static_cast<ExitCode>(code)
+                                   : kFailed;
         throw CliError(exit_code,
-                       last.empty() ? fmt::format("regraspd ended at once ({} {})", WIFSIGNALED(status) ? "signal" : "exit code",
+                       last.empty() ? fmt::format("regraspd ended at once ({} {})",
+                                                  WIFSIGNALED(status) ? "signal" : "exit code",
                                                   WIFSIGNALED(status) ? WTERMSIG(status) : code)
                                     : last,
                        "regraspd --help, or cat " + started.log);
       }
       if (Clock::now() > deadline) {
-        throw CliError(kTimeout, fmt::format("regraspd is not ready after {:g} s", timeout_s), "cat " + started.log);
+        throw CliError(kTimeout, fmt::format("regraspd is not ready after {:g} s", timeout_s),
+                       "cat " + started.log);
       }
       WaitFor(-1, 0, Deadline(0.01));
     }
@@ -135,7 +147,8 @@ void StopDaemon(const std::string& socket, double timeout_s) {
   }
   while (fs::exists(socket) && Listening(socket)) {
     if (Clock::now() > deadline) {
-      throw CliError(kTimeout, fmt::format("{} is still there after {:g} s", socket, timeout_s), "regrasp status");
+      throw CliError(kTimeout, fmt::format("{} is still there after {:g} s", socket, timeout_s),
+                     "regrasp status");
     }
     WaitFor(-1, 0, Deadline(0.01));
   }

@@ -15,11 +15,12 @@ struct StartedDaemon {
   std::string socket, log;
 };
 
-/// Starts `regraspd --socket socket arguments…` in the background, its output in a log file beside the
-/// socket, and waits until it accepts connections. Makes the socket's directory (0700) if it is
-/// missing. Throws CliError: with the end of the log when the daemon ends at once, kTimeout when it is
-/// not ready after `timeout_s`.
-StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments, double timeout_s);
+/// Starts `regraspd --socket socket arguments…` in the background, its output in a log file beside
+/// the socket, and waits until it accepts connections. Makes the socket's directory (0700) if it is
+/// missing. Throws CliError: with the end of the log when the daemon ends at once, kTimeout when it
+/// is not ready after `timeout_s`.
+StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
+                          double timeout_s);
 
 /// Asks the daemon at `socket` to stop and waits until it is gone. Throws CliError.
 void StopDaemon(const std::string& socket, double timeout_s);

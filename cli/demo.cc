@@ -22,9 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr int kGraspChunkTicks = 500;   // the grasp is stepped in chunks, so that every run ends it at the same tick
+constexpr int kGraspChunkTicks =
+    500;  // the grasp is stepped in chunks, so that every run ends it at the same tick
 constexpr int kMaxGraspChunks = 60;
-constexpr double kForceTolerance = 0.02;  // of the weight: what the project promises for a hold at rest
+constexpr double kForceTolerance =
+    0.02;  // of the weight: what the project promises for a hold at rest
 
 /// The demo's own daemon, in a directory of its own; stopped when the demo ends, however it ends.
 class PrivateDaemon {
@@ -87,13 +89,17 @@ class Show {
   void Say(const std::string& text) {
     if (!context_.options().quiet && context_.out().human()) fmt::print(stderr, "  {}\n", text);
   }
-  Json Call(const char* method, const Json& params = Json::object()) { return client_.Call(method, params); }
+  Json Call(const char* method, const Json& params = Json::object()) {
+    return client_.Call(method, params);
+  }
   Json Wait(const Json& job) { return client_.Call("job.wait", {{"id", job.at("job")}}, 600); }
   /// A new run, paused, with the object in the hand at a tick that does not depend on pacing.
   Json GraspPaused();
-  Exploration Explore(const std::string& finger, const std::string& criterion, std::int64_t gradient_seed);
+  Exploration Explore(const std::string& finger, const std::string& criterion,
+                      std::int64_t gradient_seed);
   void Picture(const std::string& name, const std::string& file);
-  void Add(const std::string& claim, const std::string& measured, bool shown, bool required = true) {
+  void Add(const std::string& claim, const std::string& measured, bool shown,
+           bool required = true) {
     claims_.push_back({claim, measured, shown ? Claim::kShown : Claim::kMissed, required});
   }
 
@@ -114,7 +120,9 @@ Json Show::GraspPaused() {
     const Json record = Call("job.get", {{"id", job.at("job")}});
     const std::string state = Plain(At(record, "state"));
     if (state == "queued" || state == "running") continue;
-    if (state != "done") throw CliError(kFailed, "the grasp failed: " + Plain(At(record, "error")), "regrasp help grasp");
+    if (state != "done")
+      throw CliError(kFailed, "the grasp failed: " + Plain(At(record, "error")),
+                     "regrasp help grasp");
     return record;
   }
   throw CliError(kFailed, "the grasp does not end", "regrasp status");
@@ -140,31 +148,40 @@ void Show::Grasp() {
     now = truth.at("time_s");
     touching = 0;
     for (const auto& contact : At(truth, "contacts")) {
-      for (int i = 0; i < 3; ++i) force[i] += contact.at("force_W_n")[static_cast<std::size_t>(i)].get<double>();
+      for (int i = 0; i < 3; ++i)
+        force[i] += contact.at("force_W_n")[static_cast<std::size_t>(i)].get<double>();
       if (At(contact, "finger").is_null()) ++foreign;
     }
-    for (const auto& [name, finger] : Named(At(truth, "fingers"), "finger")) touching += At(finger, "in_contact") == true;
+    for (const auto& [name, finger] : Named(At(truth, "fingers"), "finger"))
+      touching += At(finger, "in_contact") == true;
     const Json& g = truth.at("gravity_W_m_s2");
-    weight = truth.at("object").at("mass_kg").get<double>() * std::hypot(g[0].get<double>(), g[1].get<double>(), g[2].get<double>());
+    weight = truth.at("object").at("mass_kg").get<double>() *
+             std::hypot(g[0].get<double>(), g[1].get<double>(), g[2].get<double>());
   }
   const double sum = std::hypot(force[0], force[1], force[2]) / samples;
   const Json quality = Call("quality");
   const std::size_t fingers = At(quality, "fingers").size();
-  measured_["hold"] = {{"grasp", record}, {"force_n", sum}, {"weight_n", weight}, {"quality", quality}};
-  Add("holds an unknown object (Sec. II)", fmt::format("{} of {} fingers touch", touching, fingers), touching == fingers && foreign == 0);
-  Add("", fmt::format("forces sum to {:.3f} N, weight {:.3f} N", sum, weight), std::abs(sum - weight) < kForceTolerance * weight);
+  measured_["hold"] = {
+      {"grasp", record}, {"force_n", sum}, {"weight_n", weight}, {"quality", quality}};
+  Add("holds an unknown object (Sec. II)", fmt::format("{} of {} fingers touch", touching, fingers),
+      touching == fingers && foreign == 0);
+  Add("", fmt::format("forces sum to {:.3f} N, weight {:.3f} N", sum, weight),
+      std::abs(sum - weight) < kForceTolerance * weight);
   Picture("scene", "figure1-scene.png");
 }
 
-Exploration Show::Explore(const std::string& finger, const std::string& criterion, std::int64_t gradient_seed) {
+Exploration Show::Explore(const std::string& finger, const std::string& criterion,
+                          std::int64_t gradient_seed) {
   Exploration run;
   GraspPaused();
   run.start_hash = Plain(At(Call("status"), "state_hash"));
-  const Json job = Call("explore", {{"finger", finger}, {"criterion", criterion}, {"seed", gradient_seed}});
+  const Json job =
+      Call("explore", {{"finger", finger}, {"criterion", criterion}, {"seed", gradient_seed}});
   Call("resume");
   while (true) {
     const Json quality = Call("quality");
-    if (At(quality, "stability").is_number()) run.least_stability = std::min(run.least_stability, quality["stability"].get<double>());
+    if (At(quality, "stability").is_number())
+      run.least_stability = std::min(run.least_stability, quality["stability"].get<double>());
     try {
       run.record = client_.Call("job.wait", {{"id", job.at("job")}, {"timeout_s", 0.02}}, 30);
       return run;
@@ -177,23 +194,27 @@ Exploration Show::Explore(const std::string& finger, const std::string& criterio
 /// phi, noise-free, before and after.
 std::string Rise(const Json& record) {
   const double from = record.at("phi_true_initial"), to = record.at("phi_true_final");
-  return fmt::format("{:.3f} to {:.3f} ({:+.1f} %), {}", from, to, from > 0 ? 100 * (to / from - 1) : 0.0, Plain(At(record, "reason")));
+  return fmt::format("{:.3f} to {:.3f} ({:+.1f} %), {}", from, to,
+                     from > 0 ? 100 * (to / from - 1) : 0.0, Plain(At(record, "reason")));
 }
 
 bool Rose(const Json& record) {
-  return record.at("phi_true_final").get<double>() > record.at("phi_true_initial").get<double>() && At(record, "state") == "done";
+  return record.at("phi_true_final").get<double>() > record.at("phi_true_initial").get<double>() &&
+         At(record, "state") == "done";
 }
 
 void Show::Explorations(int repeats) {
   const std::string phi(context_.out().Phi());
   const Json contacts = Call("contacts");
   std::vector<std::string> fingers;
-  for (const auto& [name, finger] : Named(At(contacts, "fingers"), "finger")) fingers.push_back(name);
+  for (const auto& [name, finger] : Named(At(contacts, "fingers"), "finger"))
+    fingers.push_back(name);
   for (const auto& finger : fingers) {
     Say("exploring with the " + finger + " finger");
     const Exploration run = Explore(finger, "manipulability", seed_);
     measured_["explore"][finger] = run.record;
-    Add(finger == fingers.front() ? "exploring raises " + phi + " (Sec. III a)" : "", fmt::format("{:<6} {}", finger, Rise(run.record)), Rose(run.record));
+    Add(finger == fingers.front() ? "exploring raises " + phi + " (Sec. III a)" : "",
+        fmt::format("{:<6} {}", finger, Rise(run.record)), Rose(run.record));
   }
   if (std::find(fingers.begin(), fingers.end(), "ring") == fingers.end()) return;
 
@@ -205,20 +226,31 @@ void Show::Explorations(int repeats) {
   const Exploration second = Explore("ring", "combined", seed_);
   Picture("quality", "figure2-combined.png");
   const auto& plots = FindParam(*FindMethod("plot"), "name")->values;
-  if (std::find(plots.begin(), plots.end(), "comparison") != plots.end()) Picture("comparison", "figure2.png");
-  measured_["figure2"] = {{"manipulability", first.record}, {"combined", second.record}, {"start_hash", {first.start_hash, second.start_hash}},
-                          {"least_stability", {first.least_stability, second.least_stability}}, {"threshold", threshold}};
-  Add("fig. 2: both runs start alike", "state " + first.start_hash.substr(0, 8) + (first.start_hash == second.start_hash ? ", the same bits" : " and " + second.start_hash.substr(0, 8)),
+  if (std::find(plots.begin(), plots.end(), "comparison") != plots.end())
+    Picture("comparison", "figure2.png");
+  measured_["figure2"] = {{"manipulability", first.record},
+                          {"combined", second.record},
+                          {"start_hash", {first.start_hash, second.start_hash}},
+                          {"least_stability", {first.least_stability, second.least_stability}},
+                          {"threshold", threshold}};
+  Add("fig. 2: both runs start alike",
+      "state " + first.start_hash.substr(0, 8) +
+          (first.start_hash == second.start_hash ? ", the same bits"
+                                                 : " and " + second.start_hash.substr(0, 8)),
       first.start_hash == second.start_hash);
   Add("fig. 2: linear sum", Rise(second.record), At(second.record, "state") == "done");
   const double least = std::min(first.least_stability, second.least_stability);
-  Add("fig. 2: stable throughout", fmt::format("stability at least {:.3f}, threshold {:.3f}", least, threshold), least > 0 && Call("status").at("state") != "dropped");
+  Add("fig. 2: stable throughout",
+      fmt::format("stability at least {:.3f}, threshold {:.3f}", least, threshold),
+      least > 0 && Call("status").at("state") != "dropped");
 
   Say(fmt::format("{} repeats with other gradient directions", repeats));
   int rose = 0;
-  for (int i = 0; i < repeats; ++i) rose += Rose(Explore("ring", "manipulability", seed_ + 1000 + i).record);
+  for (int i = 0; i < repeats; ++i)
+    rose += Rose(Explore("ring", "manipulability", seed_ + 1000 + i).record);
   measured_["repeats"] = {{"runs", repeats}, {"rose", rose}};
-  Add("repeats always succeed (50 of 50)", fmt::format("{} of {}, other gradient directions", rose, repeats), rose == repeats);
+  Add("repeats always succeed (50 of 50)",
+      fmt::format("{} of {}, other gradient directions", rose, repeats), rose == repeats);
 }
 
 void Show::Rotation() {
@@ -235,10 +267,12 @@ void Show::Rotation() {
     const Json record = Wait(job);
     measured_["rotate"] = record;
     const bool good = JobExit(record) == kOk;
-    Add(claim, good || At(record, "error").is_null()
-                   ? fmt::format("{} deg, {} regrasps, offset {} mm", Fixed(At(record, "angle_rad"), 0, kDegrees), Plain(At(record, "regrasps")),
-                                 Fixed(At(record, "max_position_error_m"), 1, 1e3))
-                   : Plain(At(record, "error")),
+    Add(claim,
+        good || At(record, "error").is_null()
+            ? fmt::format(
+                  "{} deg, {} regrasps, offset {} mm", Fixed(At(record, "angle_rad"), 0, kDegrees),
+                  Plain(At(record, "regrasps")), Fixed(At(record, "max_position_error_m"), 1, 1e3))
+            : Plain(At(record, "error")),
         good, false);
     Picture("gait", "figure3b-gait.png");
     Picture("contacts", "figure3a-contacts.png");
@@ -257,11 +291,15 @@ ExitCode Demo(Context& context, const Invocation& invocation) {
   const fs::path output = fs::absolute(invocation.Text("output", "regrasp-demo"));
   std::error_code error;
   fs::create_directories(output, error);
-  if (error) throw CliError(kIo, fmt::format("cannot make {}: {}", output.string(), error.message()), "regrasp demo -o OTHER_DIR");
+  if (error)
+    throw CliError(kIo, fmt::format("cannot make {}: {}", output.string(), error.message()),
+                   "regrasp demo -o OTHER_DIR");
 
-  std::vector<std::string> arguments = {"--speed", "max", "--seed", std::to_string(seed), "--output-dir", output};
+  std::vector<std::string> arguments = {"--speed",      "max", "--seed", std::to_string(seed),
+                                        "--output-dir", output};
   if (invocation.Has("models-dir")) {
-    arguments.insert(arguments.end(), {"--models-dir", fs::absolute(invocation.Text("models-dir")).string()});
+    arguments.insert(arguments.end(),
+                     {"--models-dir", fs::absolute(invocation.Text("models-dir")).string()});
   }
   const PrivateDaemon daemon(arguments);
   Show show(context, daemon.socket(), output, seed);
@@ -270,11 +308,20 @@ ExitCode Demo(Context& context, const Invocation& invocation) {
   show.Rotation();
 
   bool good = true;
-  Json answer = {{"ok", true}, {"output_dir", output.string()}, {"seed", seed}, {"claims", Json::array()}, {"measured", show.measured()}};
+  Json answer = {{"ok", true},
+                 {"output_dir", output.string()},
+                 {"seed", seed},
+                 {"claims", Json::array()},
+                 {"measured", show.measured()}};
   for (const auto& claim : show.claims()) {
-    const char* verdict = claim.verdict == Claim::kShown ? "shown" : claim.verdict == Claim::kMissed ? "missed" : "not tried";
+    const char* verdict = claim.verdict == Claim::kShown    ? "shown"
+                          : claim.verdict == Claim::kMissed ? "missed"
+                                                            : "not tried";
     if (claim.required && claim.verdict != Claim::kShown) good = false;
-    answer["claims"].push_back({{"claim", claim.claim}, {"measured", claim.measured}, {"verdict", verdict}, {"required", claim.required}});
+    answer["claims"].push_back({{"claim", claim.claim},
+                                {"measured", claim.measured},
+                                {"verdict", verdict},
+                                {"required", claim.required}});
   }
   answer["ok"] = good;
   std::ofstream(output / "summary.json") << answer.dump(1) << '\n';
@@ -283,13 +330,15 @@ ExitCode Demo(Context& context, const Invocation& invocation) {
     Table table({"THE PAPER", "THIS RUN", ""});
     for (const auto& claim : show.claims()) {
       table.Row({claim.claim, claim.measured,
-                 claim.verdict == Claim::kShown    ? out.Paint(std::string(out.Tick()), Style::kGood)
-                 : claim.verdict == Claim::kMissed ? out.Paint("MISSED", claim.required ? Style::kBad : Style::kWarn)
-                                                   : out.Paint("-", Style::kWarn)});
+                 claim.verdict == Claim::kShown ? out.Paint(std::string(out.Tick()), Style::kGood)
+                 : claim.verdict == Claim::kMissed
+                     ? out.Paint("MISSED", claim.required ? Style::kBad : Style::kWarn)
+                     : out.Paint("-", Style::kWarn)});
     }
     out.Add(table.Text(out));
     out.Line();
-    for (const auto& picture : show.measured().at("pictures")) out.Line("picture  " + Plain(picture));
+    for (const auto& picture : show.measured().at("pictures"))
+      out.Line("picture  " + Plain(picture));
     out.Line("figures  " + (output / "summary.json").string());
   });
   return good ? kOk : kFailed;

@@ -4,9 +4,9 @@
 
 namespace regrasp::cli {
 
-/// `regrasp demo`: a private daemon at full speed grasps, explores with every finger, makes the two runs of
-/// figure 2 with the ring finger, rotates, draws the pictures, and sets the paper's claims beside what
-/// this run measured. kFailed when a claim about grasp or exploration was missed.
+/// `regrasp demo`: a private daemon at full speed grasps, explores with every finger, makes the two
+/// runs of figure 2 with the ring finger, rotates, draws the pictures, and sets the paper's claims
+/// beside what this run measured. kFailed when a claim about grasp or exploration was missed.
 ExitCode Demo(Context& context, const Invocation& invocation);
 
 }  // namespace regrasp::cli

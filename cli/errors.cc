@@ -14,8 +14,9 @@ std::string JsonQuote(const std::string& text) {
 void PrintError(const CliError& error, bool json, bool color) {
   std::string text;
   if (json) {
-    text = fmt::format(R"({{"error":{{"exit_code":{},"message":{},"hint":{}}}}})", static_cast<int>(error.code),
-                       JsonQuote(error.what()), JsonQuote(error.hint));
+    text =
+        fmt::format(R"({{"error":{{"exit_code":{},"message":{},"hint":{}}}}})",
+                    static_cast<int>(error.code), JsonQuote(error.what()), JsonQuote(error.hint));
     if (error.rpc_code != 0) {
       text.insert(text.size() - 2, fmt::format(R"(,"code":{})", error.rpc_code));
     }

@@ -12,8 +12,8 @@ namespace regrasp::cli {
 
 using enum ExitCode;
 
-/// An error with its exit code. `what()` is one line: cause, path or value. `hint` is the next command to
-/// try, or empty.
+/// An error with its exit code. `what()` is one line: cause, path or value. `hint` is the next
+/// command to try, or empty.
 class CliError : public std::runtime_error {
  public:
   CliError(ExitCode exit_code, const std::string& cause, std::string next = "", int rpc = 0)

@@ -19,8 +19,12 @@ struct Unit {
 };
 // SI on the wire, everyday units on the command line. Longer suffixes first.
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr Unit kUnits[] = {{"_rad_s", "DEG_S", kDegree}, {"_rad", "DEG", kDegree}, {"_m", "MM", 1e-3},
-                           {"_n", "N", 1},               {"_s", "S", 1},           {"_hz", "HZ", 1}};
+constexpr Unit kUnits[] = {{"_rad_s", "DEG_S", kDegree},
+                           {"_rad", "DEG", kDegree},
+                           {"_m", "MM", 1e-3},
+                           {"_n", "N", 1},
+                           {"_s", "S", 1},
+                           {"_hz", "HZ", 1}};
 
 Arg FromParam(const ParamSpec& param, bool positional) {
   Arg arg;
@@ -43,12 +47,23 @@ Arg FromParam(const ParamSpec& param, bool positional) {
   std::replace(name.begin(), name.end(), '_', '-');
   if (!positional) arg.flags = "--" + name;
   switch (param.type) {
-    case ParamType::kBool: arg.kind = ArgKind::kFlag; break;
-    case ParamType::kInteger: arg.kind = ArgKind::kInteger; break;
-    case ParamType::kNumber: arg.kind = ArgKind::kNumber; break;
-    case ParamType::kVector3: arg.kind = ArgKind::kVector3; break;
-    case ParamType::kNumberOrVector3: arg.kind = ArgKind::kNumberOrVector3; break;
-    default: arg.kind = ArgKind::kText;
+    case ParamType::kBool:
+      arg.kind = ArgKind::kFlag;
+      break;
+    case ParamType::kInteger:
+      arg.kind = ArgKind::kInteger;
+      break;
+    case ParamType::kNumber:
+      arg.kind = ArgKind::kNumber;
+      break;
+    case ParamType::kVector3:
+      arg.kind = ArgKind::kVector3;
+      break;
+    case ParamType::kNumberOrVector3:
+      arg.kind = ArgKind::kNumberOrVector3;
+      break;
+    default:
+      arg.kind = ArgKind::kText;
   }
   arg.values.assign(param.values.begin(), param.values.end());
   if (arg.metavar.empty()) arg.metavar = arg.kind == ArgKind::kVector3 ? "X,Y,Z" : "N";
@@ -67,7 +82,10 @@ Arg FromParam(const ParamSpec& param, bool positional) {
 }  // namespace
 
 Arg WaitFlag() {
-  return {.key = "wait", .flags = "--wait", .metavar = "", .kind = ArgKind::kFlag,
+  return {.key = "wait",
+          .flags = "--wait",
+          .metavar = "",
+          .kind = ArgKind::kFlag,
           .help = "wait until the job has ended, print its record"};
 }
 
@@ -75,7 +93,8 @@ CommandSpec MethodCommand(std::string_view method, std::string group, Handler ru
                           const MethodArguments& arguments) {
   const MethodSpec* spec = FindMethod(method);
   if (spec == nullptr) throw std::logic_error("no method " + std::string(method));
-  CommandSpec command{std::string(spec->words), std::move(group), std::string(spec->sentence), spec, {}, run};
+  CommandSpec command{
+      std::string(spec->words), std::move(group), std::string(spec->sentence), spec, {}, run};
   for (const auto& name : arguments.positional) {
     command.args.push_back(FromParam(*FindParam(*spec, name), true));
   }
@@ -94,7 +113,8 @@ CommandSpec MethodCommand(std::string_view method, std::string group, Handler ru
 const std::vector<CommandSpec>& Commands() {
   static const std::vector<CommandSpec> kCommands = [] {
     std::vector<CommandSpec> all;
-    for (auto* group : {RunCommands, ControlCommands, InspectCommands, ResultCommands, ToolCommands}) {
+    for (auto* group :
+         {RunCommands, ControlCommands, InspectCommands, ResultCommands, ToolCommands}) {
       for (auto& command : group()) all.push_back(std::move(command));
     }
     return all;
@@ -106,7 +126,8 @@ std::vector<const CommandSpec*> FindCommands(std::string_view words) {
   std::vector<const CommandSpec*> found;
   for (const auto& command : Commands()) {
     if (command.words == words) return {&command};
-    if (words.empty() || command.words.starts_with(std::string(words) + " ")) found.push_back(&command);
+    if (words.empty() || command.words.starts_with(std::string(words) + " "))
+      found.push_back(&command);
   }
   return found;
 }
@@ -122,7 +143,8 @@ double ParseNumber(const std::string& text, const std::string& what) {
   return value;
 }
 
-std::vector<double> ParseNumbers(const std::string& text, std::size_t count, const std::string& what) {
+std::vector<double> ParseNumbers(const std::string& text, std::size_t count,
+                                 const std::string& what) {
   std::vector<double> numbers;
   std::size_t begin = 0;
   while (true) {
@@ -132,7 +154,8 @@ std::vector<double> ParseNumbers(const std::string& text, std::size_t count, con
     begin = comma + 1;
   }
   if (numbers.size() != count) {
-    throw CliError(kUsage, fmt::format("{}: '{}' has {} numbers, not {}", what, text, numbers.size(), count));
+    throw CliError(
+        kUsage, fmt::format("{}: '{}' has {} numbers, not {}", what, text, numbers.size(), count));
   }
   return numbers;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-/// The command line as data. What a wire method knows (parameters, types, units, ranges, sentences) comes
-/// from its table; a command adds which parameters are positional and what belongs to the command line
-/// alone. Parsing, help and completion are made from the same list.
+/// The command line as data. What a wire method knows (parameters, types, units, ranges, sentences)
+/// comes from its table; a command adds which parameters are positional and what belongs to the
+/// command line alone. Parsing, help and completion are made from the same list.
 
 #include <functional>
 #include <map>
@@ -24,17 +24,17 @@ enum class ArgKind { kFlag, kText, kNumber, kInteger, kVector3, kNumberOrVector3
 
 /// One argument of a command.
 struct Arg {
-  std::string key;               ///< name on the wire, or a name of our own
-  std::string flags;             ///< "--angle", "-o,--output"; empty for a positional one
-  std::string metavar;           ///< "DEG", "FINGER"; empty for a flag
+  std::string key;      ///< name on the wire, or a name of our own
+  std::string flags;    ///< "--angle", "-o,--output"; empty for a positional one
+  std::string metavar;  ///< "DEG", "FINGER"; empty for a flag
   ArgKind kind = ArgKind::kText;
   std::string help;
-  double scale = 1;              ///< value on the wire (SI) = typed value * scale
+  double scale = 1;                      ///< value on the wire (SI) = typed value * scale
   double min = -1e300, max = 1e300;      ///< of the value on the wire, inclusive
   std::vector<std::string> values = {};  ///< the allowed words; empty: any
   std::string default_text = {};
   bool required = false;
-  bool wire = false;             ///< goes into the parameters of the method
+  bool wire = false;  ///< goes into the parameters of the method
 };
 
 /// What the user asked for.
@@ -51,15 +51,16 @@ struct Invocation {
 using Handler = ExitCode (*)(Context&, const Invocation&);
 
 struct CommandSpec {
-  std::string words;     ///< "noise set"
-  std::string group;     ///< heading in the help
+  std::string words;  ///< "noise set"
+  std::string group;  ///< heading in the help
   std::string sentence;
   const MethodSpec* method = nullptr;  ///< null for commands that are no single method
   std::vector<Arg> args = {};
   Handler run = nullptr;
 };
 
-/// A command that sends `method`, its arguments made from the table. `positional`: parameters without
+/// A command that sends `method`, its arguments made from the table. `positional`: parameters
+/// without
 /// `--`; `hidden`: parameters that this command does not offer; `extra`: arguments of its own.
 struct MethodArguments {
   std::vector<std::string_view> positional = {};
@@ -85,14 +86,14 @@ std::vector<const CommandSpec*> FindCommands(std::string_view words);
 enum class ColorMode { kAuto, kAlways, kNever };
 
 struct GlobalOptions {
-  std::string socket;               ///< -s; empty: the rule of core/protocol/socket_path.h
+  std::string socket;  ///< -s; empty: the rule of core/protocol/socket_path.h
   bool json = false, csv = false, quiet = false, verbose = false;
   ColorMode color = ColorMode::kAuto;
   std::optional<double> timeout_s;  ///< --timeout
 };
 
-/// Reads the arguments. Throws CliError(kUsage) that names the argument and the nearest name. A request
-/// for help becomes an invocation of `help`.
+/// Reads the arguments. Throws CliError(kUsage) that names the argument and the nearest name. A
+/// request for help becomes an invocation of `help`.
 Invocation Parse(int argc, const char* const* argv, GlobalOptions* options);
 
 /// Whether `--json` is among the arguments: for errors that come before they are understood.
@@ -104,6 +105,7 @@ std::span<const Arg> GlobalArgs();
 /// `text` as a number, finite, nothing left over. Throws CliError(kUsage) that names `what`.
 double ParseNumber(const std::string& text, const std::string& what);
 /// "X,Y,Z" as numbers, `count` of them.
-std::vector<double> ParseNumbers(const std::string& text, std::size_t count, const std::string& what);
+std::vector<double> ParseNumbers(const std::string& text, std::size_t count,
+                                 const std::string& what);
 
 }  // namespace regrasp::cli

@@ -36,7 +36,8 @@ std::string Wrap(const std::string& text, std::size_t indent) {
 std::string ArgLine(const Arg& arg) {
   std::string name = arg.flags.empty() ? arg.metavar : arg.flags;
   if (name.starts_with("--")) name = "    " + name;
-  for (auto comma = name.find(','); comma != std::string::npos; comma = std::string::npos) name.replace(comma, 1, ", ");
+  for (auto comma = name.find(','); comma != std::string::npos; comma = std::string::npos)
+    name.replace(comma, 1, ", ");
   if (!arg.flags.empty() && !arg.metavar.empty()) name += " " + arg.metavar;
   std::string text = arg.help;
   if (!arg.values.empty()) text += fmt::format(": {}", fmt::join(arg.values, ", "));
@@ -52,22 +53,27 @@ std::string Usage(const CommandSpec& command) {
   for (const auto& arg : command.args) {
     if (arg.flags.empty()) text += arg.required ? " " + arg.metavar : " [" + arg.metavar + "]";
   }
-  const bool options = std::any_of(command.args.begin(), command.args.end(), [](const Arg& a) { return !a.flags.empty(); });
+  const bool options = std::any_of(command.args.begin(), command.args.end(),
+                                   [](const Arg& a) { return !a.flags.empty(); });
   return text + (options ? " [OPTION]..." : "");
 }
 
 std::string CommandHelp(const CommandSpec& command, const Output& out) {
-  std::string text = out.Paint(Usage(command), Style::kBold) + "\n" + Wrap("  " + command.sentence, 2);
+  std::string text =
+      out.Paint(Usage(command), Style::kBold) + "\n" + Wrap("  " + command.sentence, 2);
   if (!command.args.empty()) text += "\n";
   for (const auto& arg : command.args) text += ArgLine(arg);
   if (command.method != nullptr && !command.method->result.empty()) {
-    text += "\n" + Wrap(fmt::format("  Asks the daemon '{}'; with --json prints its answer: {}", command.method->name, command.method->result), 2);
+    text += "\n" + Wrap(fmt::format("  Asks the daemon '{}'; with --json prints its answer: {}",
+                                    command.method->name, command.method->result),
+                        2);
   }
   return text + "\n  regrasp help lists the global options.\n";
 }
 
 std::string Overview(const Output& out) {
-  std::string text = out.Paint("regrasp", Style::kBold) + " [OPTION]... COMMAND    hold, explore and turn an object in a simulated hand\n";
+  std::string text = out.Paint("regrasp", Style::kBold) +
+                     " [OPTION]... COMMAND    an object in a simulated hand: hold, explore, turn\n";
   std::string group;
   for (const auto& command : Commands()) {
     if (command.group != group) {
@@ -83,7 +89,8 @@ std::string Overview(const Output& out) {
   text += "\n" + out.Paint("Options", Style::kBold) + " (anywhere on the line)\n";
   for (const auto& arg : GlobalArgs()) text += ArgLine(arg);
   text += "\n" + out.Paint("Exit codes", Style::kBold) + "\n";
-  for (const auto& exit : ExitTable()) text += fmt::format("  {:>3}  {}\n", static_cast<int>(exit.code), exit.sentence);
+  for (const auto& exit : ExitTable())
+    text += fmt::format("  {:>3}  {}\n", static_cast<int>(exit.code), exit.sentence);
   return text + "\nBegin with: regrasp up; regrasp grasp --wait; regrasp explore ring --wait\n";
 }
 
@@ -112,7 +119,8 @@ std::string Followers(const std::string& words) {
 std::string Cases(const char* pattern) {
   std::set<std::string> paths = {""};
   for (const auto& command : Commands()) {
-    for (auto end = command.words.find(' '); end != std::string::npos; end = command.words.find(' ', end + 1)) {
+    for (auto end = command.words.find(' '); end != std::string::npos;
+         end = command.words.find(' ', end + 1)) {
       paths.insert(command.words.substr(0, end));
     }
     paths.insert(command.words);
@@ -137,11 +145,13 @@ std::string HelpText(const std::string& words, const Output& out) {
     std::vector<std::string_view> names;
     for (const auto& command : Commands()) names.push_back(command.words);
     const auto nearest = NearestName(words, names);
-    throw CliError(kUsage, fmt::format("no command '{}'", words), nearest.empty() ? "regrasp help" : fmt::format("regrasp help {}", nearest));
+    throw CliError(kUsage, fmt::format("no command '{}'", words),
+                   nearest.empty() ? "regrasp help" : fmt::format("regrasp help {}", nearest));
   }
   if (found.size() == 1 && found.front()->words == words) return CommandHelp(*found.front(), out);
   std::string text;
-  for (const auto* command : found) text += Usage(*command) + "\n" + Wrap("  " + command->sentence, 2);
+  for (const auto* command : found)
+    text += Usage(*command) + "\n" + Wrap("  " + command->sentence, 2);
   return text;
 }
 
@@ -155,7 +165,9 @@ std::string CompletionScript(const std::string& shell) {
            "complete -c regrasp -f -a '(__regrasp_words)'\n";
   }
   // zsh reads the bash script through its own compatibility layer.
-  return std::string(shell == "zsh" ? "#compdef regrasp\nautoload -U +X bashcompinit && bashcompinit\n" : "") +
+  return std::string(shell == "zsh"
+                         ? "#compdef regrasp\nautoload -U +X bashcompinit && bashcompinit\n"
+                         : "") +
          "_regrasp() {\n"
          "  local path='' word i\n"
          "  for ((i = 1; i < COMP_CWORD; i++)); do\n"

@@ -35,7 +35,8 @@ std::string JobTitle(const Json& record) {
 std::string ProgressText(Context& context, const Json& record) {
   Output& out = context.out();
   const double progress = record.value("progress", 0.0);
-  std::string text = fmt::format("{}  {} {:3.0f} %", JobTitle(record), out.Bar(progress, 30), 100 * progress);
+  std::string text =
+      fmt::format("{}  {} {:3.0f} %", JobTitle(record), out.Bar(progress, 30), 100 * progress);
   if (record.value("method", "") == "rotate" && At(record, "angle_rad").is_number()) {
     text += fmt::format("  {}{}", Fixed(At(record, "angle_rad"), 1, kDegrees), out.Degree());
   }
@@ -51,7 +52,9 @@ std::string Change(const Output& out, const Json& from, const Json& to) {
   if (!from.is_number() || !to.is_number()) return "-";
   const double a = from, b = to;
   std::string text = fmt::format("{:.4f} to {:.4f}", a, b);
-  if (a > 0) text += "  " + out.Paint(fmt::format("{:+.1f} %", 100 * (b - a) / a), b > a ? Style::kGood : Style::kWarn);
+  if (a > 0)
+    text += "  " + out.Paint(fmt::format("{:+.1f} %", 100 * (b - a) / a),
+                             b > a ? Style::kGood : Style::kWarn);
   return text;
 }
 
@@ -59,16 +62,21 @@ void PrintExplore(Output& out, const Json& r) {
   out.Line(fmt::format("  criterion  {}", Plain(At(r, "criterion"))));
   out.Line(fmt::format("  {}   {}", out.Phi() == "phi" ? "phi     " : "φ       ",
                        Change(out, At(r, "phi_initial"), At(r, "phi_final"))));
-  out.Line(fmt::format("  noise-free {}", Change(out, At(r, "phi_true_initial"), At(r, "phi_true_final"))));
-  out.Line(fmt::format("  path       {} mm in {} cycles", Fixed(At(r, "path_length_m"), 1, 1e3), Plain(At(r, "cycles"))));
+  out.Line(fmt::format("  noise-free {}",
+                       Change(out, At(r, "phi_true_initial"), At(r, "phi_true_final"))));
+  out.Line(fmt::format("  path       {} mm in {} cycles", Fixed(At(r, "path_length_m"), 1, 1e3),
+                       Plain(At(r, "cycles"))));
   out.Line(fmt::format("  seed       {}", Plain(At(r, "seed"))));
 }
 
 void PrintRotate(Output& out, const Json& r) {
-  out.Line(fmt::format("  angle      {}{} ({} turns) in {} s", Fixed(At(r, "angle_rad"), 1, kDegrees), out.Degree(),
+  out.Line(fmt::format("  angle      {}{} ({} turns) in {} s",
+                       Fixed(At(r, "angle_rad"), 1, kDegrees), out.Degree(),
                        Fixed(At(r, "turns"), 2), Fixed(At(r, "sim_time_s"), 1)));
-  out.Line(fmt::format("  gait       {} cycles, {} regrasps", Plain(At(r, "gait_cycles")), Plain(At(r, "regrasps"))));
-  out.Line(fmt::format("  error      at most {} mm, tilt {}{}", Fixed(At(r, "max_position_error_m"), 1, 1e3),
+  out.Line(fmt::format("  gait       {} cycles, {} regrasps", Plain(At(r, "gait_cycles")),
+                       Plain(At(r, "regrasps"))));
+  out.Line(fmt::format("  error      at most {} mm, tilt {}{}",
+                       Fixed(At(r, "max_position_error_m"), 1, 1e3),
                        Fixed(At(r, "max_tilt_rad"), 1, kDegrees), out.Degree()));
 }
 
@@ -94,11 +102,16 @@ void PrintJob(Output& out, const Json& record) {
   } else if (!ended) {
     verdict += fmt::format(" {:.0f} %", 100 * record.value("progress", 0.0));
   }
-  out.Line(fmt::format("job {}: {} {}", Plain(At(record, "id")), out.Paint(JobTitle(record), Style::kBold),
-                       out.Paint(verdict, !ended ? Style::kPlain : good ? Style::kGood : Style::kBad)));
+  out.Line(fmt::format("job {}: {} {}", Plain(At(record, "id")),
+                       out.Paint(JobTitle(record), Style::kBold),
+                       out.Paint(verdict, !ended ? Style::kPlain
+                                          : good ? Style::kGood
+                                                 : Style::kBad)));
   if (At(record, "error").is_string()) out.Line("  error      " + Plain(At(record, "error")));
-  if (ended && record.value("method", "") == "explore" && state == "done") PrintExplore(out, record);
-  if (ended && record.value("method", "") == "rotate" && At(record, "angle_rad").is_number()) PrintRotate(out, record);
+  if (ended && record.value("method", "") == "explore" && state == "done")
+    PrintExplore(out, record);
+  if (ended && record.value("method", "") == "rotate" && At(record, "angle_rad").is_number())
+    PrintRotate(out, record);
   if (At(record, "start_tick").is_number()) {
     const std::string start = Plain(At(record, "start_tick"));
     out.Line(ended ? fmt::format("  ticks      {} to {}", start, Plain(At(record, "end_tick")))
@@ -108,7 +121,8 @@ void PrintJob(Output& out, const Json& record) {
 
 Json WaitForJob(Context& context, std::int64_t id) {
   const Interruptible interruptible;
-  ProgressLine line(context.out().human() && !context.options().quiet && ::isatty(STDERR_FILENO) == 1);
+  ProgressLine line(context.out().human() && !context.options().quiet &&
+                    ::isatty(STDERR_FILENO) == 1);
   const auto deadline = Deadline(context.options().timeout_s.value_or(0));
   const std::string how = fmt::format("regrasp job wait {}", id);
   while (true) {
@@ -122,8 +136,10 @@ Json WaitForJob(Context& context, std::int64_t id) {
       }
       if (error.code != kTimeout || error.rpc_code == 0) throw;
       if (Clock::now() >= deadline) {
-        throw CliError(kTimeout, fmt::format("job {} has not ended after {:g} s; it goes on", id,
-                                             *context.options().timeout_s), how);
+        throw CliError(kTimeout,
+                       fmt::format("job {} has not ended after {:g} s; it goes on", id,
+                                   *context.options().timeout_s),
+                       how);
       }
     }
     if (line.on()) line.Show(ProgressText(context, context.client().Call("job.get", {{"id", id}})));
@@ -135,7 +151,8 @@ ExitCode StartJob(Context& context, const Invocation& invocation) {
   const std::int64_t id = answer.at("job");
   if (!invocation.Has("wait")) {
     context.Print(answer, [&] {
-      context.out().Line(fmt::format("job {}: {} started    (regrasp job wait {})", id, invocation.command->words, id));
+      context.out().Line(fmt::format("job {}: {} started    (regrasp job wait {})", id,
+                                     invocation.command->words, id));
     });
     return kOk;
   }

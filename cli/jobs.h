@@ -6,8 +6,8 @@
 
 namespace regrasp::cli {
 
-/// Waits until job `id` has ended and returns its record; shows one line of progress on a terminal's
-/// stderr. Throws CliError: kTimeout after --timeout, kInterrupted (the job goes on).
+/// Waits until job `id` has ended and returns its record; shows one line of progress on a
+/// terminal's stderr. Throws CliError: kTimeout after --timeout, kInterrupted (the job goes on).
 Json WaitForJob(Context& context, std::int64_t id);
 
 /// kOk, or kFailed when the operation that the record tells of failed: job failed or cancelled,

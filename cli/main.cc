@@ -21,8 +21,11 @@ int Run(int argc, char** argv) {
     ExitCode code = kOk;
     try {
       code = invocation.command->run(context, invocation);
-    } catch (...) {
+    } catch (CliError& error) {
       context.out().Flush();  // what was answered before the failure
+      if (error.code == kUsage && error.hint.empty()) {
+        error.hint = "regrasp help " + invocation.command->words;
+      }
       throw;
     }
     context.out().Flush();
@@ -30,7 +33,8 @@ int Run(int argc, char** argv) {
   } catch (const CliError& error) {
     return fail(error);
   } catch (const std::exception& error) {
-    return fail(CliError(kProtocol, std::string("unexpected answer: ") + error.what(), "regrasp doctor"));
+    return fail(
+        CliError(kProtocol, std::string("unexpected answer: ") + error.what(), "regrasp doctor"));
   }
 }
 

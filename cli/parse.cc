@@ -9,8 +9,8 @@
 #include "cli/grammar.h"
 #include "core/common/nearest_name.h"
 
-// CLI11 splits the words; checking them is ours, because it accepts nan inside a range and says little
-// about unknown words. Two of its habits are worked around below:
+// CLI11 splits the words; checking them is ours, because it accepts nan inside a range and says
+// little about unknown words. Two of its habits are worked around below:
 //  - fallthrough() is inherited only by subcommands that are added after it;
 //  - without a maximum of one subcommand, `watch status` would read `status` as the command.
 
@@ -53,24 +53,31 @@ void CheckRange(const Arg& arg, double typed) {
   // Half a rounding of the unit conversion: the limit itself, typed in degrees, is allowed.
   const double slack = 1e-12 * std::abs(value);
   if (value >= arg.min - slack && value <= arg.max + slack) return;
-  const std::string unit = arg.scale == 1 && arg.metavar != "S" && arg.metavar != "HZ" ? "" : " " + arg.metavar;
-  throw CliError(kUsage, arg.max >= 1e299 ? fmt::format("{} {:g}: allowed are {:g}{} and more", ArgName(arg),
-                                                       typed, arg.min / arg.scale, unit)
-                                          : fmt::format("{} {:g}: allowed are {:g} to {:g}{}", ArgName(arg), typed,
-                                                        arg.min / arg.scale, arg.max / arg.scale, unit));
+  const std::string unit =
+      arg.scale == 1 && arg.metavar != "S" && arg.metavar != "HZ" ? "" : " " + arg.metavar;
+  throw CliError(kUsage, arg.max >= 1e299
+                             ? fmt::format("{} {:g}: allowed are {:g}{} and more", ArgName(arg),
+                                           typed, arg.min / arg.scale, unit)
+                             : fmt::format("{} {:g}: allowed are {:g} to {:g}{}", ArgName(arg),
+                                           typed, arg.min / arg.scale, arg.max / arg.scale, unit));
 }
 
 Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
   const std::string name = ArgName(arg);
   switch (arg.kind) {
-    case ArgKind::kFlag: return true;
+    case ArgKind::kFlag:
+      return true;
     case ArgKind::kText: {
-      if (arg.values.empty() || std::find(arg.values.begin(), arg.values.end(), text) != arg.values.end()) {
+      if (arg.values.empty() ||
+          std::find(arg.values.begin(), arg.values.end(), text) != arg.values.end()) {
         return text;
       }
       const auto nearest = NearestName(text, arg.values);
-      throw CliError(kUsage, fmt::format("{} '{}' is none of {}", name, text, fmt::join(arg.values, ", ")),
-                     nearest.empty() ? "" : fmt::format("regrasp {}{} {}", scope, arg.flags.empty() ? "" : " " + name, nearest));
+      throw CliError(kUsage,
+                     fmt::format("{} '{}' is none of {}", name, text, fmt::join(arg.values, ", ")),
+                     nearest.empty() ? ""
+                                     : fmt::format("regrasp {}{} {}", scope,
+                                                   arg.flags.empty() ? "" : " " + name, nearest));
     }
     case ArgKind::kInteger: {
       const double typed = ParseNumber(text, name);
@@ -125,11 +132,14 @@ CliError Unexpected(const std::string& word, const std::string& scope, const Nod
   if (word.size() > 1 && word[0] == '-') {
     const std::string name = word.substr(0, word.find('='));
     const auto nearest = NearestName(name, FlagNames(node));
-    return {kUsage, fmt::format("unknown option '{}'{}", name, scope.empty() ? "" : " of '" + scope + "'"),
-            nearest.empty() ? HelpHint(scope) : fmt::format("{}    ({})", nearest, HelpHint(scope))};
+    return {
+        kUsage,
+        fmt::format("unknown option '{}'{}", name, scope.empty() ? "" : " of '" + scope + "'"),
+        nearest.empty() ? HelpHint(scope) : fmt::format("{}    ({})", nearest, HelpHint(scope))};
   }
   if (node != nullptr && node->command != nullptr) {
-    return {kUsage, fmt::format("'{}' takes no further argument '{}'", scope, word), HelpHint(scope)};
+    return {kUsage, fmt::format("'{}' takes no further argument '{}'", scope, word),
+            HelpHint(scope)};
   }
   std::vector<std::string> names;
   for (const auto* command : FindCommands(scope)) {
@@ -153,22 +163,50 @@ std::string ZeroBeforePoint(const std::string& word) {
 
 std::span<const Arg> GlobalArgs() {
   static const std::vector<Arg> kArgs = {
-      {.key = "socket", .flags = "-s,--socket", .metavar = "PATH", .help = "socket of the daemon",
+      {.key = "socket",
+       .flags = "-s,--socket",
+       .metavar = "PATH",
+       .help = "socket of the daemon",
        .default_text = "$REGRASP_SOCKET, or where `regrasp up` puts it"},
-      {.key = "json", .flags = "--json", .metavar = "", .kind = ArgKind::kFlag,
+      {.key = "json",
+       .flags = "--json",
+       .metavar = "",
+       .kind = ArgKind::kFlag,
        .help = "print one JSON object; streams print one a line"},
-      {.key = "csv", .flags = "--csv", .metavar = "", .kind = ArgKind::kFlag,
+      {.key = "csv",
+       .flags = "--csv",
+       .metavar = "",
+       .kind = ArgKind::kFlag,
        .help = "print comma-separated values"},
-      {.key = "quiet", .flags = "-q,--quiet", .metavar = "", .kind = ArgKind::kFlag,
+      {.key = "quiet",
+       .flags = "-q,--quiet",
+       .metavar = "",
+       .kind = ArgKind::kFlag,
        .help = "print no answer, only errors"},
-      {.key = "verbose", .flags = "-v,--verbose", .metavar = "", .kind = ArgKind::kFlag,
+      {.key = "verbose",
+       .flags = "-v,--verbose",
+       .metavar = "",
+       .kind = ArgKind::kFlag,
        .help = "print more"},
-      {.key = "color", .flags = "--color", .metavar = "WHEN", .help = "colour and bars' glyphs",
-       .values = {"auto", "always", "never"}, .default_text = "auto; NO_COLOR turns it off"},
-      {.key = "timeout", .flags = "--timeout", .metavar = "S", .kind = ArgKind::kNumber,
-       .help = "wait so long for an answer, or with --wait for the end of the job", .min = 0.001, .max = 1e6,
+      {.key = "color",
+       .flags = "--color",
+       .metavar = "WHEN",
+       .help = "colour and bars' glyphs",
+       .values = {"auto", "always", "never"},
+       .default_text = "auto; NO_COLOR turns it off"},
+      {.key = "timeout",
+       .flags = "--timeout",
+       .metavar = "S",
+       .kind = ArgKind::kNumber,
+       .help = "wait so long for an answer, or with --wait for the end of the job",
+       .min = 0.001,
+       .max = 1e6,
        .default_text = "10; no limit with --wait"},
-      {.key = "help", .flags = "-h,--help", .metavar = "", .kind = ArgKind::kFlag, .help = "help on a command"},
+      {.key = "help",
+       .flags = "-h,--help",
+       .metavar = "",
+       .kind = ArgKind::kFlag,
+       .help = "help on a command"},
   };
   return kArgs;
 }
@@ -200,11 +238,13 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   app.add_option("--color", color);
   app.add_option("--timeout", timeout);
 
-  // Only commands whose first word is among the arguments: building all of them is half of the start-up.
+  // Only commands whose first word is among the arguments: building all of them is half of the
+  // start-up.
   const std::set<std::string_view> words_given(argv + std::min(argc, 1), argv + argc);
   std::map<std::string, Node> nodes;
   for (const auto& command : Commands()) {
-    if (!words_given.contains(std::string_view(command.words).substr(0, command.words.find(' ')))) continue;
+    if (!words_given.contains(std::string_view(command.words).substr(0, command.words.find(' '))))
+      continue;
     CLI::App* parent = &app;
     for (std::size_t end = 0; end != std::string::npos;) {
       const std::size_t begin = end == 0 ? 0 : end + 1;
@@ -219,7 +259,8 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
     }
     Node& leaf = nodes[command.words];
     leaf.command = &command;
-    for (const auto& arg : command.args) AddArg(leaf.app, &leaf.given.emplace_back(Given{&arg, "", false}));
+    for (const auto& arg : command.args)
+      AddArg(leaf.app, &leaf.given.emplace_back(Given{&arg, "", false}));
   }
 
   const auto scope_words = [&app] {
@@ -258,8 +299,10 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
       return show;
     }
     if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-      throw CliError(kUsage, scope.empty() ? "no command given" : fmt::format("'{}' needs a further word", scope),
-                     HelpHint(scope));
+      throw CliError(
+          kUsage,
+          scope.empty() ? "no command given" : fmt::format("'{}' needs a further word", scope),
+          HelpHint(scope));
     }
     std::string cause = error.what();
     throw CliError(kUsage, cause.substr(0, cause.find('\n')), HelpHint(scope));
@@ -272,10 +315,12 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   invocation.params = Json::object();
   try {
     if (json != 0 && json != 1) {
-      throw CliError(kUsage, fmt::format("--json={}: this version writes format 1", json), "regrasp --json=1 " + scope);
+      throw CliError(kUsage, fmt::format("--json={}: this version writes format 1", json),
+                     "regrasp --json=1 " + scope);
     }
     options->json = json == 1;
-    if (options->json && options->csv) throw CliError(kUsage, "--json and --csv exclude each other");
+    if (options->json && options->csv)
+      throw CliError(kUsage, "--json and --csv exclude each other");
     if (options->quiet && options->verbose) throw CliError(kUsage, "-q and -v exclude each other");
     for (const auto& arg : GlobalArgs()) {
       if (arg.key == "color" && !color.empty()) {
@@ -284,12 +329,14 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
                          : mode == "never" ? ColorMode::kNever
                                            : ColorMode::kAuto;
       }
-      if (arg.key == "timeout" && !timeout.empty()) options->timeout_s = ToWire(arg, timeout, scope).get<double>();
+      if (arg.key == "timeout" && !timeout.empty())
+        options->timeout_s = ToWire(arg, timeout, scope).get<double>();
     }
     for (const auto& given : node.given) {
       const Arg& arg = *given.arg;
       const bool present = given.option->count() > 0;
-      if (!present && arg.required) throw CliError(kUsage, fmt::format("{} is missing", ArgName(arg)));
+      if (!present && arg.required)
+        throw CliError(kUsage, fmt::format("{} is missing", ArgName(arg)));
       if (!present || (arg.kind == ArgKind::kFlag && !given.flag)) continue;
       const Json value = ToWire(arg, given.text, scope);
       if (arg.wire) {

@@ -24,11 +24,14 @@ std::string CsvCell(const Json& value) {
 
 void FlattenInto(const std::string& name, const Json& value,
                  std::vector<std::pair<std::string, Json>>* out) {
-  const auto join = [&name](const std::string& part) { return name.empty() ? part : name + "." + part; };
+  const auto join = [&name](const std::string& part) {
+    return name.empty() ? part : name + "." + part;
+  };
   if (value.is_object()) {
     for (const auto& [key, item] : value.items()) FlattenInto(join(key), item, out);
   } else if (value.is_array()) {
-    for (std::size_t i = 0; i < value.size(); ++i) FlattenInto(join(std::to_string(i)), value[i], out);
+    for (std::size_t i = 0; i < value.size(); ++i)
+      FlattenInto(join(std::to_string(i)), value[i], out);
   } else {
     out->emplace_back(name, value);
   }

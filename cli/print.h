@@ -28,8 +28,8 @@ class Output {
   void Line(std::string_view text = "") { (text_ += text) += '\n'; }
   /// Adds `value` as one line of JSON.
   void AddJson(const Json& value);
-  /// Adds CSV (RFC 4180): nested objects become columns `a.b`, arrays of numbers `a.0`. The header line
-  /// is written before the first row, and again never.
+  /// Adds CSV (RFC 4180): nested objects become columns `a.b`, arrays of numbers `a.0`. The header
+  /// line is written before the first row, and again never.
   void AddCsv(const Json& row);
   /// Writes everything to stdout. Throws CliError(kIo).
   void Flush();
@@ -76,8 +76,8 @@ std::string Vector(const Json& value, int digits, double scale = 1.0);
 std::string Plain(const Json& value);
 /// {"a":{"b":1}} -> {{"a.b", 1}}.
 std::vector<std::pair<std::string, Json>> Flatten(const Json& value);
-/// The items of `value`, each with its name: an object's members, or an array of objects whose name is in
-/// the field `key` ("finger", "name").
+/// The items of `value`, each with its name: an object's members, or an array of objects whose name
+/// is in the field `key` ("finger", "name").
 std::vector<std::pair<std::string, Json>> Named(const Json& value, const char* key);
 /// value[key], or null where there is none.
 const Json& At(const Json& value, const char* key);

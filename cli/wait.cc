@@ -24,7 +24,8 @@ void OnSignal(int) { g_interrupted = 1; }
 Clock::time_point Deadline(double seconds) {
   constexpr double kNoLimit = 365.0 * 86400;
   const double s = seconds > 0 ? std::min(seconds, kNoLimit) : kNoLimit;
-  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+  return Clock::now() +
+         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
 
 Interruptible::Interruptible() {
@@ -56,7 +57,8 @@ bool WaitFor(int fd, short events, Clock::time_point deadline) {
     CheckInterrupt();
     const auto left = std::max(deadline - Clock::now(), Clock::duration::zero());
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(left).count();
-    const timespec timeout{static_cast<time_t>(ns / 1'000'000'000), static_cast<long>(ns % 1'000'000'000)};
+    const timespec timeout{static_cast<time_t>(ns / 1'000'000'000),
+                           static_cast<long>(ns % 1'000'000'000)};
     pollfd entry{fd, events, 0};
     const int n = ppoll(&entry, 1, &timeout, g_depth > 0 ? &g_mask_before : nullptr);
     if (n > 0) return true;

@@ -11,8 +11,8 @@ using Clock = std::chrono::steady_clock;
 /// The time `seconds` from now; a huge value (a year) when `seconds` is 0 or less: no limit.
 Clock::time_point Deadline(double seconds);
 
-/// While an Interruptible lives, SIGINT and SIGTERM no longer kill the program: the wait in progress, or
-/// the next one, throws CliError(kInterrupted) instead.
+/// While an Interruptible lives, SIGINT and SIGTERM no longer kill the program: the wait in
+/// progress, or the next one, throws CliError(kInterrupted) instead.
 class Interruptible {
  public:
   Interruptible();

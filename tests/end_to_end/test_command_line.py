@@ -1,0 +1,158 @@
+"""`regrasp` alone: words, errors, help, completion, evaluate, and what it links."""
+
+import json
+import math
+import os
+import subprocess
+import unittest
+
+from harness import Case, REGRASP, HANG_S, Terminal, environment
+
+GRASP = {
+    "contacts": [{"position_m": [0.025 * math.cos(a), 0.025 * math.sin(a), 0], "normal": [-math.cos(a), -math.sin(a), 0], "mu": 0.8}
+                 for a in (0, 2 * math.pi / 3, 4 * math.pi / 3)],
+    "torque_scale_m": 0.025, "cone_edges": 8,
+}
+
+
+class Words(Case):
+    def test_wrong_words_are_usage_errors_with_the_nearest_name(self):
+        for words, wrong, nearest in [
+            (["statu"], "statu", "regrasp status"),
+            (["noise", "preset", "papr"], "papr", "regrasp noise preset paper"),
+            (["noise", "shwo"], "noise shwo", "regrasp noise show"),
+            (["explore", "ring", "--critrion", "x"], "--critrion", "--criterion"),
+            (["explore", "ring", "--criterion", "switchd"], "switchd", "regrasp explore --criterion switched"),
+            (["watch", "qualty"], "qualty", "regrasp watch quality"),
+            (["help", "explor"], "explor", "regrasp help explore"),
+            (["grasp", "--wiat"], "--wiat", "--wait"),
+        ]:
+            with self.subTest(words):
+                cause, hint = self.refused(2, *words)
+                self.assertIn(f"'{wrong}'", cause)
+                self.assertIn(nearest, hint)
+
+    def test_incomplete_and_contradictory_words_are_usage_errors(self):
+        for words in [[], ["noise"], ["job"], ["explore"], ["param", "set", "gravity"], ["explore", "ring", "extra"], ["--json", "--csv", "status"],
+                      ["-q", "-v", "status"], ["--json=2", "status"], ["noise", "set"], ["job", "show", "x"], ["job", "show", "0"], ["call", "status", "[1]"],
+                      ["call", "status", "{"], ["completion", "tcsh"], ["--color", "red", "status"], ["--seed", "1", "status"]]:
+            with self.subTest(words):
+                done = self.expect(2, *words)
+                self.assertEqual(done.stdout, "")
+
+    def test_numbers_must_be_finite_and_in_range(self):
+        for words in [["noise", "set", "--position", "nan"], ["noise", "set", "--position", "inf"], ["noise", "set", "--position", "1e9"],
+                      ["noise", "set", "--position", "-1"], ["noise", "set", "--position", "1mm"], ["push", "--force", "1,2"], ["push", "--force", "1,nan,2"],
+                      ["explore", "ring", "--seed", "1.5"], ["--timeout", "nan", "status"], ["--timeout", "0", "status"], ["step", "0"], ["noise", "set", "--pose", "1"],
+                      ["watch", "status", "--rate", "0"], ["watch", "status", "--count", "0"]]:
+            with self.subTest(words):
+                self.refused(2, *words)
+
+    def test_names_of_commands_may_be_arguments(self):
+        # Each gets as far as looking for the daemon: the words were understood.
+        for words in [["watch", "status"], ["noise", "preset", "off"], ["call", "status"], ["plot", "quality"], ["param", "get", "status"],
+                      ["status", "--json"], ["push", "--force", "-1,-.5,0"], ["param", "set", "x", "-.5"], ["param", "set", "x", "-1,0,0"]]:
+            with self.subTest(words):
+                self.expect(3, *words)
+
+    def test_errors_are_objects_with_json(self):
+        for words in [["--json", "statu"], ["statu", "--json"], ["--json=1", "explore"]]:
+            done = self.expect(2, *words)
+            self.assertEqual(done.stdout, "")
+            error = json.loads(done.stderr)["error"]
+            self.assertEqual(error["exit_code"], 2)
+            self.assertTrue(error["message"])
+            self.assertTrue(error["hint"])
+
+    def test_help_covers_every_command_and_fits_80_columns(self):
+        overview = self.expect(0, "help").stdout
+        commands = self.json("help")["commands"]
+        self.assertGreater(len(commands), 30)
+        for command in commands:
+            self.assertIn(command["words"], overview)
+            text = self.expect(0, "help", *command["words"].split()).stdout
+            self.assertEqual(text, self.expect(0, *command["words"].split(), "--help").stdout)
+            for line in text.splitlines() + overview.splitlines():
+                self.assertLessEqual(len(line), 80, line)
+
+    def test_completion_scripts_name_the_commands(self):
+        for shell in ("bash", "zsh", "fish"):
+            script = self.expect(0, "completion", shell).stdout
+            for word in ("explore", "noise set", "--criterion", "taxel"):
+                self.assertIn(word, script)
+        ask = 'COMP_WORDS=(regrasp noise preset t); COMP_CWORD=3; _regrasp; echo "${COMPREPLY[@]}"'
+        done = subprocess.run(["bash", "-c", self.expect(0, "completion", "bash").stdout + ask], capture_output=True, text=True, env=environment(), check=True)
+        self.assertEqual(done.stdout.strip(), "taxel")
+
+
+class Start(Case):
+    def test_version(self):
+        self.assertRegex(self.expect(0, "version").stdout, r"^regrasp \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.json("version")["version"], r"^\d+\.\d+\.\d+$")
+        self.assertEqual(self.expect(0, "--version").stdout, self.expect(0, "version").stdout)
+        self.assertEqual(self.expect(0, "-q", "version").stdout, "")
+
+    def test_links_neither_simulation_nor_pictures(self):
+        libraries = subprocess.run(["ldd", str(REGRASP)], capture_output=True, text=True, check=True).stdout
+        for name in ("opencv", "libode", "urdfdom", "assimp"):
+            self.assertNotIn(name, libraries)
+
+    def test_a_full_disk_is_an_io_error(self):
+        for words in (["version"], ["help"], ["version", "--json"], ["completion", "bash"]):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([str(REGRASP), *words], stdout=full, stderr=subprocess.PIPE, text=True, timeout=HANG_S, check=False)
+            self.assertEqual(done.returncode, 74)
+            self.assertIn("No space left", done.stderr)
+
+    def test_runs_with_everything_closed(self):
+        done = subprocess.run(["bash", "-c", f"exec {REGRASP} version <&- 2>&-"], capture_output=True, text=True, env=environment(), check=False)
+        self.assertEqual((done.returncode, done.stdout[:8]), (0, "regrasp "))
+
+    def test_colour_is_for_terminals_that_want_it(self):
+        def coloured(*words, **env):
+            terminal = Terminal([REGRASP, "help", *words], environment(TERM="xterm", **env))
+            self.assertEqual(terminal.finish(), 0)
+            return "\x1b[" in terminal.text
+        self.assertTrue(coloured())
+        self.assertFalse(coloured(NO_COLOR="1"))
+        self.assertFalse(coloured("--color", "never"))
+        self.assertTrue(coloured("--color", "always", NO_COLOR="1"))
+        self.assertNotIn("\x1b[", self.expect(0, "help").stdout)
+        self.assertIn("\x1b[", self.expect(0, "--color", "always", "help").stdout)
+
+
+class Evaluate(Case):
+    def write(self, text):
+        file = self.dir / "grasp.json"
+        file.write_text(text if isinstance(text, str) else json.dumps(text))
+        return file
+
+    def test_three_contacts_on_the_equator(self):
+        answer = self.json("evaluate", self.write(GRASP))
+        self.assertTrue(answer["force_closure"])
+        # Forces: G Gᵀ of the translations is 3·I (three contacts, orthonormal axes each); about z the three
+        # tangential forces act with lever 1, the other two torques share lever 1 on e_z: eigenvalues 3 and 1.5.
+        self.assertAlmostEqual(answer["min_singular_value"], math.sqrt(1.5), delta=1e-9)
+        self.assertAlmostEqual(answer["isotropy"], math.sqrt(0.5), delta=1e-9)
+        self.assertGreater(answer["epsilon"], 0)
+        self.assertNotIn("load_margin_n", answer)
+
+    def test_reads_standard_input_and_writes_csv(self):
+        table = self.expect(0, "--csv", "evaluate", "-", stdin=json.dumps(GRASP)).stdout.splitlines()
+        self.assertEqual(len(table), 2)
+        self.assertEqual(table[0].split(",")[0], "epsilon")
+
+    def test_refuses_bad_files_by_name(self):
+        for text in ["", "{", "[]", '{"contacts": 1}', json.dumps({**GRASP, "cone_edge": 8}), json.dumps(GRASP).replace("0.8", "NaN", 1)]:
+            cause, _ = self.refused(2, "evaluate", self.write(text))
+            self.assertIn("grasp.json", cause)
+        self.refused(6, "evaluate", self.dir / "absent.json")
+        if os.geteuid() != 0:
+            file = self.write(GRASP)
+            file.chmod(0)
+            self.refused(77, "evaluate", file)
+        self.refused(74, "evaluate", self.dir)
+
+
+if __name__ == "__main__":
+    unittest.main()
