@@ -171,6 +171,8 @@ void World::Impl::BuildHand(const JointVector& q0) {
   for (const BodyPlan& plan : articulation.bodies) {
     dBodyID body = dBodyCreate(world);
     SetMassOf(body, plan.mass, plan.I_B);
+    // Gyroscopic torque of a link is below 1e-5 N m at 1 rad/s, and rotors do not add to it.
+    dBodySetGyroscopicMode(body, 0);
     SetPose(body, X_WL[plan.link] * Eigen::Translation3d(plan.p_LB));
     bodies.push_back(body);
   }
