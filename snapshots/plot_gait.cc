@@ -153,7 +153,7 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
     if (AnyValue(own)) explorers.push_back(LineEntry(FingerName(hand, f), pen));
   }
   DrawCurve(&canvas, lower, t, stability, {kInk, 2.5});
-  DrawCurve(&canvas, lower, t, threshold, {kVermillion, 2, {12, 7}});
+  DrawCurve(&canvas, lower, t, threshold, {kGrey, 2, {12, 7}});
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
 
   const double side = left + width + 28;
@@ -184,7 +184,7 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   if (explores)
     y = DrawLegend(&canvas, {side, std::max(y + 8, middle.area.y)}, "φ, noise-free", explorers);
   const std::array<LegendEntry, 2> holding = {LineEntry("holding fingers", {kInk, 2.5}),
-                                              LineEntry("threshold", {kVermillion, 2, {12, 7}})};
+                                              LineEntry("threshold", {kGrey, 2, {12, 7}})};
   DrawLegend(&canvas, {side, std::max(y + 8, lower.area.y)}, "stability, as sensed", holding);
   canvas.Save();
 }

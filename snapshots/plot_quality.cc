@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
 #include "snapshots/snapshots.h"
@@ -31,27 +35,25 @@ BandLook LookOfObjective(const HandModel& hand, int value) {
   const bool stability = on_stability || criterion == Criterion::kStability;
   const Colour colour = LookOfFinger(finger).colour;
   return {FingerName(hand, finger) + ", " + CriterionText(criterion, on_stability),
-          stability ? Tint(colour, 0.25) : Tint(colour, 0.6)};
+          stability ? Tint(colour, 0.25) : Tint(colour, 0.6), FingerName(hand, finger)};
 }
 
-/// "ring 1.21 → 1.87": noise-free manipulability over each finger's last exploration.
-std::vector<std::string> Gains(std::span<const Frame> frames, const HandModel& hand) {
-  std::vector<std::string> lines;
-  for (int f = 0; f < hand.num_fingers(); ++f) {
-    double first = kNoValue, last = kNoValue;
-    bool exploring = false;
-    for (const Frame& frame : frames) {
-      const bool now = ExploringFinger(frame) == f;
-      const double phi = TrueManipulability(frame, f);
-      if (now && !exploring) first = phi;
-      if (now && phi == phi) last = phi;
-      if (first != first) first = last;
-      exploring = now;
+/// "  1.21 → 1.87": noise-free manipulability over the finger's last exploration; empty without
+/// one.
+std::string Gain(std::span<const Frame> frames, int finger) {
+  double first = kNoValue, last = kNoValue;
+  bool exploring = false;
+  for (const Frame& frame : frames) {
+    const bool now = ExploringFinger(frame) == finger;
+    if (now && !exploring) first = last = kNoValue;
+    if (now) {
+      const double phi = TrueManipulability(frame, finger);
+      if (std::isfinite(phi)) last = phi;
+      if (!std::isfinite(first)) first = phi;
     }
-    if (last == last)
-      lines.push_back(fmt::format("{}  {:.2f} → {:.2f}", FingerName(hand, f), first, last));
+    exploring = now;
   }
-  return lines;
+  return std::isfinite(last) ? fmt::format("  {:.2f} → {:.2f}", first, last) : "";
 }
 
 }  // namespace
@@ -138,31 +140,28 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
     DrawCurve(&canvas, upper, t, bold, {look.colour, 4});
     any_explores =
         any_explores || std::any_of(bold.begin(), bold.end(), [](double v) { return v == v; });
-    fingers.push_back(LineEntry(FingerName(hand, f), {look.colour, 2, look.dash}));
+    fingers.push_back(
+        LineEntry(FingerName(hand, f) + Gain(frames, f), {look.colour, 2, look.dash}));
   }
   DrawCurve(&canvas, middle, t, stability, {kInk, 2.5});
-  DrawCurve(&canvas, middle, t, threshold, {kVermillion, 2, {12, 7}});
-  DrawCurve(&canvas, lower, t, margin, {Shade(kGreen, 0.2), 2.5});
+  DrawCurve(&canvas, middle, t, threshold, {kGrey, 2, {12, 7}});
+  DrawCurve(&canvas, lower, t, margin, {kInk, 2.5});
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
 
   const double side = left + width + 28;
-  double y = DrawLegend(&canvas, {side, upper.area.y}, "finger, noise-free", fingers) + 8;
+  double y = DrawLegend(&canvas, {side, upper.area.y},
+                        any_explores ? "φ, last exploration" : "finger, noise-free", fingers) +
+             8;
   if (any_explores) {
     const std::array<LegendEntry, 2> kinds = {LineEntry("while it explores", {kInk, 4}),
                                               LineEntry("as sensed", {Tint(kInk, 0.62), 1.5})};
     y = DrawLegend(&canvas, {side, y}, "", kinds) + 8;
-    y = DrawLegend(&canvas, {side, y}, "φ over exploration", {});
-    for (const std::string& line : Gains(frames, hand)) {
-      if (y > middle.area.y - 20) break;
-      canvas.Text({side, y + 8}, line, {.size = 17});
-      y += 25;
-    }
   }
   const std::array<LegendEntry, 2> holding = {LineEntry("holding fingers", {kInk, 2.5}),
-                                              LineEntry("threshold", {kVermillion, 2, {12, 7}})};
+                                              LineEntry("threshold", {kGrey, 2, {12, 7}})};
   y = DrawLegend(&canvas, {side, middle.area.y}, "stability, as sensed", holding) + 12;
   if (!marks.empty()) y = DrawLegend(&canvas, {side, y}, "events", marks);
-  const std::array<LegendEntry, 1> load = {LineEntry("all in contact", {Shade(kGreen, 0.2), 2.5})};
+  const std::array<LegendEntry, 1> load = {LineEntry("all in contact", {kInk, 2.5})};
   DrawLegend(&canvas, {side, std::max(y + 12, lower.area.y)}, "load margin", load);
   canvas.Save();
 }

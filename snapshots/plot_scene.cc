@@ -179,8 +179,7 @@ class ViewPainter {
     static constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
     for (int k : order) draw(triad, Vector3d::Unit(k), 46, {kGrey, 2.4}, kNames[k], kGrey);
     if (gravity_W.norm() > 1e-6)
-      draw({box_.br().x - 70, box_.y + 66}, gravity_W.normalized(), 62, {kVermillion, 4}, "g",
-           kVermillion);
+      draw({box_.br().x - 70, box_.y + 66}, gravity_W.normalized(), 62, {kInk, 4}, "g", kInk);
   }
 
   /// Lengths at the depth of the object, in the lower left corner.
@@ -270,7 +269,7 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
     canvas.Clip(box);
     for (const Frame::Contact& contact : frame.contacts)
       view.Force(contact.p_WC, contact.force_W, metres_per_newton,
-                 contact.finger >= 0 ? LookOfFinger(contact.finger).colour : kVermillion);
+                 contact.finger >= 0 ? LookOfFinger(contact.finger).colour : kInk);
     for (int f = 0; f < std::min<int>(hand.num_fingers(), static_cast<int>(frame.fingers.size()));
          ++f)
       view.Label(frame.fingers[f].true_tip_W, view.At(frame.p_WO), hand.fingers[f].name,
@@ -299,8 +298,7 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
     entries.push_back(MarkEntry(fmt::format("{}  {:.2f} N", hand.fingers[f].name, force[f]),
                                 Marker::kDisc, LookOfFinger(f).colour));
   if (other > 0)
-    entries.push_back(
-        MarkEntry(fmt::format("other links  {:.2f} N", other), Marker::kDisc, kVermillion));
+    entries.push_back(MarkEntry(fmt::format("other links  {:.2f} N", other), Marker::kDisc, kInk));
   double y = DrawLegend(&canvas, {side, top + 4}, "contact force, true", entries) + 16;
   const std::array<LegendEntry, 1> arrow = {
       LegendEntry{"force on the object", [](Canvas* c, Point2 m) {

@@ -16,32 +16,31 @@ namespace {
 struct EventLook {
   const char* text;
   Marker marker;
-  Colour colour;
 };
 
 /// Nothing for kinds that the strips already show, and for those that come too often to mark.
 std::optional<EventLook> LookOfEvent(const Event& event) {
   switch (event.kind) {
     case EventKind::kContactLost:
-      return EventLook{"contact lost", Marker::kCross, kVermillion};
+      return EventLook{"contact lost", Marker::kCross};
     case EventKind::kContactMade:
-      return EventLook{"contact made", Marker::kPlus, kGreen};
-    case EventKind::kDropped:
-      return EventLook{"object dropped", Marker::kDown, kVermillion};
-    case EventKind::kFault:
-      return EventLook{"fault", Marker::kStar, kVermillion};
+      return EventLook{"contact made", Marker::kPlus};
     case EventKind::kSlip:
-      return EventLook{"slip", Marker::kDiamond, kOrange};
+      return EventLook{"slip", Marker::kDiamond};
+    case EventKind::kDropped:
+      return EventLook{"object dropped", Marker::kDown};
+    case EventKind::kFault:
+      return EventLook{"fault", Marker::kStar};
     case EventKind::kNoise:
-      return EventLook{"noise changed", Marker::kSquare, kGrey};
+      return EventLook{"noise changed", Marker::kSquare};
     case EventKind::kParameter:
-      return EventLook{"parameter changed", Marker::kDiamond, kGrey};
+      return EventLook{"parameter changed", Marker::kDiamond};
     case EventKind::kPush:
-      return EventLook{"push", Marker::kUp, kBlue};
+      return EventLook{"push", Marker::kUp};
     case EventKind::kReset:
-      return EventLook{"reset", Marker::kStar, kGrey};
+      return EventLook{"reset", Marker::kStar};
     case EventKind::kStandIn:
-      return EventLook{"stand-in lets go", Marker::kDisc, kBlue};
+      return EventLook{"stand-in lets go", Marker::kDisc};
     default:
       return std::nullopt;
   }
@@ -106,9 +105,12 @@ void DrawStrip(Canvas* canvas, const Panel& panel, double y, double height, cons
     const BandLook how = look(band.value);
     canvas->FillBox({from, y, to - from, height}, how.colour);
     const double size = std::min(17.0, 0.72 * height);
-    if (canvas->TextWidth(how.label, size) + 8 < to - from)
-      canvas->Text({(from + to) / 2, y + height / 2}, how.label,
-                   {.size = size, .align_x = AlignX::kCentre});
+    for (const std::string& label : {how.label, how.short_label})
+      if (!label.empty() && canvas->TextWidth(label, size) + 8 < to - from) {
+        canvas->Text({(from + to) / 2, y + height / 2}, label,
+                     {.size = size, .align_x = AlignX::kCentre});
+        break;
+      }
     canvas->Line({from, y}, {from, y + height}, {kWhite, 1.5});
   }
   const Box all(panel.area.x, y, panel.area.width, height);
@@ -139,14 +141,15 @@ std::vector<LegendEntry> DrawEvents(Canvas* canvas, std::span<const Panel> panel
   for (const Event& event : events) {
     const auto look = LookOfEvent(event);
     if (!look || event.tick < first.tick || event.tick > last.tick) continue;
+    // What happens to one finger has its colour.
+    const Colour colour = event.finger >= 0 ? LookOfFinger(event.finger).colour : kInk;
     const double x = top.At(static_cast<double>(event.tick) * dt, 0).x;
     if (x - previous_x > 3)
       for (const Panel& panel : panels)
-        canvas->Line({x, panel.area.y}, {x, panel.area.br().y},
-                     {Tint(look->colour, 0.45), 1, {3, 5}});
+        canvas->Line({x, panel.area.y}, {x, panel.area.br().y}, {Tint(colour, 0.45), 1, {3, 5}});
     previous_x = x;
-    canvas->Mark(look->marker, {x, y}, 5.5, look->colour);
-    legend.try_emplace(event.kind, MarkEntry(look->text, look->marker, look->colour));
+    canvas->Mark(look->marker, {x, y}, 5.5, colour);
+    legend.try_emplace(event.kind, MarkEntry(look->text, look->marker, kInk));
   }
   std::vector<LegendEntry> entries;
   for (auto& [kind, entry] : legend) entries.push_back(std::move(entry));

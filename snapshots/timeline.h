@@ -41,6 +41,7 @@ std::vector<Band> Bands(std::span<const Frame> frames,
 struct BandLook {
   std::string label;
   Colour colour;
+  std::string short_label = {};  ///< where `label` does not fit
 };
 /// A strip of labelled bands aligned with `panel`, from y to y + height. A label that does not fit
 /// its band is left out; `name` stands left of the strip.
