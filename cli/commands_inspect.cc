@@ -36,7 +36,7 @@ ExitCode Status(Context& context, const Invocation& invocation) {
   context.Print(s, [&] {
     Output& out = context.out();
     const auto line = [&out](const char* name, const std::string& value) {
-      out.Line(fmt::format("{:<8}{}", name, value));
+      out.Line(fmt::format("{:<12}{}", name, value));
     };
     const std::string state = Plain(At(s, "state"));
     line("state", out.Paint(state, StateStyle(state)) +
@@ -73,15 +73,13 @@ std::vector<Json> FingerRows(const Json& answer) {
 }
 
 void PrintContacts(Output& out, const Json& answer) {
-  Table table({"FINGER", "ROLE", "CONTACT", ">POSITION [mm]", ">NORMAL", ">FORCE [N]", "0 … 2 N"});
+  Table table({"FINGER", "ROLE", ">POSITION [mm]", ">NORMAL", ">FORCE [N]", "0 to 2"});
   for (const auto& [name, f] : Named(At(answer, "fingers"), "finger")) {
     const bool touches = At(f, "in_contact") == true;
     const Json& force = At(f, "force_n");
-    table.Row({name, Plain(At(f, "role")),
-               touches ? out.Paint(std::string(out.Tick()), Style::kGood) : std::string(out.Dash()),
-               touches ? Vector(At(f, "p_WC_m"), 1, 1e3) : "",
+    table.Row({name, Plain(At(f, "role")), touches ? Vector(At(f, "p_WC_m"), 1, 1e3) : "no contact",
                touches ? Vector(At(f, "normal_W"), 2) : "", Fixed(force, 2),
-               out.Bar(force.is_number() ? force.get<double>() / 2 : 0, 10)});
+               out.Bar(force.is_number() ? force.get<double>() / 2 : 0, 6)});
   }
   out.Add(table.Text(out));
 }
@@ -168,12 +166,17 @@ ExitCode Truth(Context& context, const Invocation& invocation) {
     out.Line(fmt::format("mass         {} g", Fixed(At(o, "mass_kg"), 1, 1e3)));
     out.Line(fmt::format("gravity      {} m/s2", Vector(At(answer, "gravity_W_m_s2"), 2)));
     out.Line();
-    Table table(
-        {"LINK", "FINGER", ">POSITION [mm]", ">NORMAL", ">FORCE ON OBJECT [N]", ">DEPTH [um]"});
+    std::vector<std::string> titles = {"LINK", "FINGER", ">POSITION [mm]", ">FORCE ON OBJECT [N]",
+                                       ">DEPTH [um]"};
+    if (context.options().verbose) titles.push_back(">NORMAL");
+    Table table(titles);
     for (const auto& c : At(answer, "contacts")) {
-      table.Row({Plain(At(c, "link")), At(c, "finger").is_null() ? "" : Plain(At(c, "finger")),
-                 Vector(At(c, "p_WC_m"), 1, 1e3), Vector(At(c, "normal_W"), 2),
-                 Vector(At(c, "force_W_n"), 2), Fixed(At(c, "depth_m"), 0, 1e6)});
+      const auto name = [&c](const char* key) {
+        return At(c, key).is_null() ? std::string() : Plain(At(c, key));
+      };
+      table.Row({name("link"), name("finger"), Vector(At(c, "p_WC_m"), 1, 1e3),
+                 Vector(At(c, "force_W_n"), 2), Fixed(At(c, "depth_m"), 0, 1e6),
+                 Vector(At(c, "normal_W"), 2)});
     }
     if (At(answer, "contacts").empty()) {
       out.Line("nothing touches the object");
@@ -225,7 +228,6 @@ ExitCode JobWait(Context& context, const Invocation& invocation) {
 std::string EventLine(Output& out, const Json& event) {
   std::string text =
       fmt::format("{:>10} s  {:<14}", Fixed(At(event, "t_s"), 3), Plain(At(event, "kind")));
-  if (At(event, "finger").is_string()) text += fmt::format(" {:<7}", Plain(At(event, "finger")));
   if (At(event, "text").is_string()) text += " " + Plain(At(event, "text"));
   const std::string kind = Plain(At(event, "kind"));
   const bool bad = kind == "dropped" || kind == "fault";

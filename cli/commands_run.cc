@@ -69,13 +69,12 @@ ExitCode Up(Context& context, const Invocation& invocation) {
   }
   Client client(socket, context.timeout_s());
   const Json status = client.Call("status", Json::object());
-  for (const char* key : {"version", "hand", "object", "seed"}) answer[key] = At(status, key);
+  for (const char* key : {"version", "hand", "object"}) answer[key] = At(status, key);
   context.Print(answer, [&] {
     Output& out = context.out();
     out.Line(fmt::format("regraspd {} {} on {}", Plain(answer["version"]),
                          running ? "is already running" : "is ready", socket));
-    out.Line(fmt::format("  hand {}, object {}, seed {}", Plain(answer["hand"]),
-                         Plain(answer["object"]), Plain(answer["seed"])));
+    out.Line(fmt::format("  hand {}, object {}", Plain(answer["hand"]), Plain(answer["object"])));
     if (!running)
       out.Line(fmt::format("  pid {}, log {}", Plain(answer["pid"]), Plain(answer["log"])));
   });

@@ -137,7 +137,7 @@ void Show::Grasp() {
   Say("grasping");
   const Json record = GraspPaused();
   Call("resume");
-  // Half a second of simulated time, many samples: sensor noise averages out.
+  // A second of simulated time, many samples: sensor noise averages out.
   double force[3] = {0, 0, 0};
   double weight = 0;
   int samples = 0, foreign = 0;
@@ -210,7 +210,7 @@ void Show::Explorations(int repeats) {
   for (const auto& [name, finger] : Named(At(contacts, "fingers"), "finger"))
     fingers.push_back(name);
   for (const auto& finger : fingers) {
-    Say("exploring with the " + finger + " finger");
+    Say("exploring: " + finger);
     const Exploration run = Explore(finger, "manipulability", seed_);
     measured_["explore"][finger] = run.record;
     Add(finger == fingers.front() ? "exploring raises " + phi + " (Sec. III a)" : "",

@@ -73,7 +73,7 @@ std::string CommandHelp(const CommandSpec& command, const Output& out) {
 
 std::string Overview(const Output& out) {
   std::string text = out.Paint("regrasp", Style::kBold) +
-                     " [OPTION]... COMMAND    an object in a simulated hand: hold, explore, turn\n";
+                     " [OPTION]... COMMAND    hold, explore and turn an object in a hand\n";
   std::string group;
   for (const auto& command : Commands()) {
     if (command.group != group) {

@@ -104,7 +104,7 @@ Table::Table(std::vector<std::string> titles) : titles_(std::move(titles)) {
 }
 
 void Table::Row(std::vector<std::string> cells) {
-  cells.resize(titles_.size());
+  cells.resize(titles_.size());  // cells of columns that are not shown go
   rows_.push_back(std::move(cells));
 }
 

@@ -1,0 +1,196 @@
+"""The two real programs together. Every test has a daemon of its own."""
+
+import json
+import os
+import stat
+import subprocess
+import unittest
+
+from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, Terminal, environment
+
+PNG = b"\x89PNG\r\n\x1a\n"
+FINGERS = ["first", "middle", "ring", "little", "thumb"]
+
+
+class UpAndDown(Case):
+    def test_a_life(self):
+        up = self.json("up", "--speed", "max", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
+        self.addCleanup(self.regrasp, "down")
+        self.assertTrue(up["started"])
+        self.assertEqual(up["socket"], str(self.socket))
+        self.assertEqual(stat.S_IMODE(os.stat(self.socket).st_mode), 0o600)
+        self.assertEqual(stat.S_IMODE(os.stat(self.socket.parent).st_mode), 0o700)
+        again = self.json("up")
+        self.assertFalse(again["started"])
+        self.assertIn("already running", self.expect(0, "up").stdout)
+        self.assertEqual(self.json("down")["stopped"], True)
+        self.assertFalse(self.socket.exists())
+        self.refused(3, "status")
+        self.refused(3, "down")
+
+    def test_a_daemon_that_cannot_start_says_why(self):
+        for words, cause in [(["--noise", "papr"], "papr"), (["--object", "unicorn"], "unicorn"), (["--speed", "nan"], "nan")]:
+            with self.subTest(words):
+                done = self.regrasp("up", *words, "--models-dir", SOURCE / "models")
+                self.assertNotIn(done.returncode, (0, 4), done.stderr)
+                self.assertIn(cause, done.stderr)
+                self.assertEqual(done.stdout, "")
+
+    def test_a_stale_socket_is_taken_over(self):
+        up = self.json("up", "--models-dir", SOURCE / "models")
+        os.kill(up["pid"], 9)
+        while True:  # the kernel closes the socket when it has reaped the process
+            done = self.regrasp("status")
+            if done.returncode == 3 and "stale" in done.stderr:
+                break
+        self.assertTrue(self.json("up", "--models-dir", SOURCE / "models")["started"])
+        self.expect(0, "down")
+
+
+class Session(DaemonCase):
+    def test_grasp_inspect_release(self):
+        self.assertEqual(self.json("status")["state"], "idle")
+        record = self.json("grasp", "--wait")
+        self.assertEqual((record["method"], record["state"]), ("grasp", "done"))
+        status = self.json("status")
+        self.assertEqual((status["state"], status["paused"], status["hand"], status["seed"]), ("holding", False, "shadow", 1))
+        contacts = self.json("contacts")["fingers"]
+        self.assertEqual(set(contacts), set(FINGERS))
+        self.assertTrue(all(finger["in_contact"] and finger["role"] == "hold" for finger in contacts.values()))
+        self.assertGreater(self.json("quality")["stability"], 0)
+        self.assertEqual(len(self.json("joints")["joints"]), 22)
+        truth = self.json("truth")
+        self.assertAlmostEqual(truth["object"]["mass_kg"], 0.08, delta=1e-9)
+        self.assertEqual({contact["finger"] for contact in truth["contacts"]}, set(FINGERS))
+        self.assertEqual(self.json("release", "--wait")["state"], "done")
+        self.assertEqual([job["method"] for job in self.json("job", "list")["jobs"]], ["grasp", "release"])
+        kinds = [event["kind"] for event in self.json("events")["events"]]
+        self.assertIn("job_finished", kinds)
+
+    def test_every_answer_is_readable_at_80_columns(self):
+        self.expect(0, "grasp", "--wait")
+        for words in (["status"], ["contacts"], ["joints"], ["quality"], ["truth"], ["job", "list"], ["job", "show", "1"], ["noise", "show"], ["param", "list"],
+                      ["param", "get", "gravity"], ["events"], ["explore", "ring"], ["stop"]):
+            with self.subTest(words):
+                text = self.expect(0, *words).stdout
+                self.assertTrue(text)
+                for line in text.splitlines():
+                    if str(self.socket) not in line:
+                        self.assertLessEqual(len(line), 80, line)
+
+    def test_csv_has_one_width(self):
+        self.expect(0, "grasp", "--wait")
+        for words, rows in [(["contacts"], 5), (["joints"], 22), (["job", "list"], 1), (["status"], 1), (["watch", "quality", "--count", "3"], 3)]:
+            with self.subTest(words):
+                lines = self.expect(0, "--csv", *words).stdout.splitlines()
+                self.assertEqual(len(lines), rows + 1)
+                self.assertEqual(len(set(lines)), rows + 1 if rows > 1 else 2)
+
+    def test_refusals(self):
+        self.refused(5, "explore", "ring")
+        self.refused(2, "explore", "tail")
+        self.refused(6, "job", "show", "99")
+        self.refused(2, "param", "set", "object.friction", "7")
+        self.refused(6, "param", "get", "object.frictoin")
+        self.refused(8, "call", "nonsense")
+        self.refused(2, "call", "status", '{"x": 1}')
+        self.refused(5, "step", "10")
+        self.assertEqual(self.json("status")["state"], "idle")
+
+    def test_noise_and_parameters_take_effect(self):
+        noise = self.json("noise", "set", "--position", "2", "--pose", "3,4")
+        self.assertAlmostEqual(noise["position_m"], 0.002, delta=1e-12)
+        self.assertAlmostEqual(noise["object_position_m"], 0.003, delta=1e-12)
+        self.assertEqual(self.json("noise", "show"), noise)
+        self.assertEqual(self.json("noise", "preset", "coarse")["preset"], "coarse")
+        self.assertEqual(self.json("noise", "off")["position_m"], 0)
+        self.assertEqual(self.json("param", "set", "object.friction", "0.5")["value"], 0.5)
+        self.assertEqual(self.json("param", "get", "object.friction")["value"], 0.5)
+        self.assertEqual(self.json("param", "set", "gravity", "0,0,-1")["value"], [0, 0, -1])
+        self.assertIn("object.friction", [p["name"] for p in self.json("param", "list")["parameters"]])
+
+    def test_pictures_go_where_they_are_asked_for(self):
+        self.expect(0, "grasp", "--wait")
+        for name in ("quality", "contacts", "scene"):
+            file = self.dir / f"{name}-copy.png"
+            self.assertEqual(self.expect(0, "plot", name, "-o", file).stdout, f"{file}\n")
+            self.assertTrue(file.read_bytes().startswith(PNG))
+        path = self.expect(0, "plot", "quality").stdout.strip()
+        self.assertEqual(path, str(self.dir / "out" / "quality.png"))
+        self.refused(74, "plot", "quality", "-o", self.dir / "absent" / "x.png")
+
+    def test_streams_are_json_lines(self):
+        lines = [json.loads(line) for line in self.expect(0, "--json", "watch", "status", "--rate", "50", "--count", "5").stdout.splitlines()]
+        self.assertEqual([line["seq"] for line in lines], sorted({line["seq"] for line in lines}))
+        self.assertEqual(len(lines), 5)
+
+    def test_a_lost_object_is_a_failure(self):
+        self.expect(0, "grasp", "--wait")
+        self.expect(0, "param", "set", "object.friction", "0.05")
+        job = self.regrasp("explore", "ring", "--wait")
+        self.assertIn(job.returncode, (1, 5), job.stdout + job.stderr)  # 5: it was lost before the job began
+
+    def test_full_disk(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([str(REGRASP), "-s", str(self.socket), "status"], stdout=full, stderr=subprocess.PIPE, text=True, env=environment(),
+                                  timeout=HANG_S, check=False)
+        self.assertEqual(done.returncode, 74)
+
+
+class Scripted(DaemonCase):
+    """Paused, so that every command has its tick."""
+
+    ARGUMENTS = ["--speed", "max", "--seed", "5", "--paused"]
+
+    def hash_after(self, ticks):
+        self.expect(0, "reset", "--seed", "5")
+        self.expect(0, "grasp")
+        self.assertEqual(self.json("step", ticks, "--wait")["state"], "done")
+        status = self.json("status")
+        return status["tick"], status["state_hash"]
+
+    def test_same_commands_same_bits(self):
+        first = self.hash_after(3000)
+        self.assertEqual(first[0], 3000)
+        self.assertEqual(self.hash_after(3000), first)
+
+    def test_interrupting_a_wait_leaves_the_job(self):
+        self.expect(0, "grasp")
+        process = subprocess.Popen([str(REGRASP), "-s", str(self.socket), "job", "wait", "1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   env=environment())
+        while self.json("status")["clients"] < 2:  # its own connection and the waiting one
+            self.assertIsNone(process.poll())
+        process.send_signal(2)
+        out, err = process.communicate(timeout=HANG_S)
+        self.assertEqual((process.returncode, out), (130, ""))
+        self.assertIn("job 1 goes on", err)
+        self.assertIn(self.json("job", "show", "1")["state"], ("queued", "running"))
+
+    def test_progress_on_a_terminal(self):
+        self.expect(0, "grasp")
+        terminal = Terminal([REGRASP, "-s", self.socket, "job", "wait", "1"], environment(TERM="xterm"))
+        terminal.read_until("grasp")  # a progress line, while the clock stands still
+        self.expect(0, "resume")
+        self.assertEqual(terminal.finish(), 0)
+        self.assertIn("done", terminal.text.split("\r\x1b[K")[-1])
+
+
+class Demo(Case):
+    def test_the_demo_shows_the_claims(self):
+        done = self.regrasp("--json", "demo", "-o", self.dir / "demo", "--repeats", "1", "--models-dir", SOURCE / "models")
+        answer = json.loads(done.stdout)
+        # Exit code and table must agree, whatever the run showed.
+        missed = [claim for claim in answer["claims"] if claim["required"] and claim["verdict"] != "shown"]
+        self.assertEqual(done.returncode, 1 if missed else 0, done.stdout)
+        self.assertEqual(answer["ok"], not missed)
+        self.assertGreaterEqual(len(answer["claims"]), 10)
+        start = answer["measured"]["figure2"]["start_hash"]
+        self.assertEqual(start[0], start[1])
+        for picture in answer["measured"]["pictures"]:
+            with open(picture, "rb") as file:
+                self.assertEqual(file.read(8), PNG)
+        self.assertEqual(missed, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
