@@ -89,7 +89,10 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
   for (std::size_t i = 0; i < curves.size(); ++i)
     DrawCurve(&canvas, upper, curves[i].t, curves[i].phi_sensed,
               {Tint(PenOfRun(i).colour, 0.68), 1.5});
-  DrawCurve(&canvas, lower, curves.front().t, curves.front().threshold, {kGrey, 2, {12, 7}});
+  const Run& longest =
+      *std::max_element(curves.begin(), curves.end(),
+                        [](const Run& a, const Run& b) { return a.t.back() < b.t.back(); });
+  DrawCurve(&canvas, lower, longest.t, longest.threshold, {kGrey, 2, {12, 7}});
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Pen pen = PenOfRun(i);
     DrawCurve(&canvas, upper, curves[i].t, curves[i].phi_true, pen);

@@ -119,7 +119,9 @@ void DrawCube(Canvas* canvas, const View& view, const Axis& axis) {
   const double half = axis.hi / kMm;
   Vector3d far;  // corner of the cube farthest from the viewer
   for (int k = 0; k < 3; ++k) far[k] = toward[k] > 0 ? -half : half;
-  const auto ticks = axis.Ticks();
+  auto ticks =
+      axis.Ticks();  // without those at the cube's corners, where the values of two edges meet
+  std::erase_if(ticks, [&](double tick) { return std::abs(tick) > 0.94 * axis.hi; });
   for (int wall = 0; wall < 3; ++wall) {
     const int u = (wall + 1) % 3, v = (wall + 2) % 3;
     const auto corner = [&](double cu, double cv) {
@@ -198,7 +200,7 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
                    sizes.end());
   reach = std::max(reach, sizes[static_cast<std::size_t>(sizes.size() * 0.999)]);
   const double half = std::min(1.16 * reach, 3 * object.bounding_radius) * kMm;
-  Axis axis = NiceAxis(-half, half, 6, false, "");
+  Axis axis = NiceAxis(-half, half, 5, false, "");
 
   const double side_width = 250, height = canvas.height();
   const double small = (height - 110 - 2 * 92) / 2;  // edge of a square panel

@@ -15,7 +15,17 @@ namespace regrasp {
 namespace {
 
 constexpr Colour kPalm{214, 214, 218}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
-constexpr double kScaleBar = 0.02;  // [m]
+constexpr double kScaleBar = 0.02;   // [m]
+constexpr double kOutOfView = 0.15;  // an object this far from every fingertip is left out [m]
+
+/// False once the object has fallen away, or its pose is no number after a fault: the picture is of
+/// the hand.
+bool ObjectInView(const Frame& frame, const ObjectModel& object) {
+  if (!frame.p_WO.allFinite() || !frame.q_WO.coeffs().allFinite()) return false;
+  return std::any_of(frame.fingers.begin(), frame.fingers.end(), [&](const FingerFrame& finger) {
+    return (finger.true_tip_W - frame.p_WO).norm() < kOutOfView + object.bounding_radius;
+  });
+}
 
 std::vector<Body> Bodies(const Frame& frame, const HandModel& hand, const ObjectModel& object) {
   KinematicsData kinematics;
@@ -50,6 +60,7 @@ std::vector<Body> Bodies(const Frame& frame, const HandModel& hand, const Object
       body.id = static_cast<int>(l);
       bodies.push_back(std::move(body));
     }
+  if (!ObjectInView(frame, object)) return bodies;
   Body body;
   body.X_WB.linear() = frame.q_WO.toRotationMatrix();
   body.X_WB.translation() = frame.p_WO;
@@ -232,11 +243,20 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
     throw std::runtime_error(
         fmt::format("{}: nothing to draw: the frame has {} joint angles, hand {} has {} joints",
                     path, frame.q.size(), hand.name, hand.num_joints()));
+  if (!frame.q.allFinite())
+    throw std::runtime_error(path + ": nothing to draw: the frame's joint angles are not finite");
   Canvas canvas(options.width, options.height, path);
+  const bool in_view = ObjectInView(frame, object);
   DrawTitle(&canvas, options.title.empty() ? "Hand, object and contact forces" : options.title,
             Facts({&frame, 1}, hand, object.name));
 
   const std::vector<Body> bodies = Bodies(frame, hand, object);
+  Vector3d middle = frame.p_WO;  // labels point away from it, scales hold at its depth
+  if (!in_view) {
+    middle.setZero();
+    for (const FingerFrame& finger : frame.fingers)
+      middle += finger.true_tip_W / static_cast<double>(frame.fingers.size());
+  }
   double largest = 0;
   Vector3d sum = Vector3d::Zero();
   for (const Frame::Contact& contact : frame.contacts) {
@@ -272,10 +292,10 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
                  contact.finger >= 0 ? LookOfFinger(contact.finger).colour : kInk);
     for (int f = 0; f < std::min<int>(hand.num_fingers(), static_cast<int>(frame.fingers.size()));
          ++f)
-      view.Label(frame.fingers[f].true_tip_W, view.At(frame.p_WO), hand.fingers[f].name,
+      view.Label(frame.fingers[f].true_tip_W, view.At(middle), hand.fingers[f].name,
                  Shade(LookOfFinger(f).colour, 0.25));
     view.Directions(frame.gravity_W);
-    view.Scales(frame.p_WO, newton, metres_per_newton);
+    view.Scales(middle, newton, metres_per_newton);
     canvas.Unclip();
     const std::vector<Point2> corners = {
         box.tl(), {box.br().x, box.y}, box.br(), {box.x, box.br().y}, box.tl()};
@@ -306,12 +326,14 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
                   }}};
   y = DrawLegend(&canvas, {side, y}, "", arrow) + 16;
   const double weight = frame.mass_kg * frame.gravity_W.norm();
+  const double carried = weight > 0 ? -sum.dot(frame.gravity_W.normalized()) : 0;
   canvas.Text({side, y + 10}, "balance", {.size = 18, .bold = true});
   std::vector<std::string> lines = {fmt::format("weight  {:.3f} N", weight)};
   if (weight > 0)
-    lines.push_back(fmt::format("carried  {:.3f} N", -sum.dot(frame.gravity_W.normalized())));
+    lines.push_back(fmt::format("carried now  {:.3f} N", std::abs(carried) < 5e-4 ? 0 : carried));
   lines.push_back(fmt::format("state  {}", Name(frame.state)));
   if (frame.stand_in) lines.push_back("stand-in holds the object");
+  if (!in_view) lines.push_back("object out of view");
   y += 40;
   for (const std::string& line : lines) {
     canvas.Text({side, y}, line, {.size = 18});

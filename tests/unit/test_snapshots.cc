@@ -149,6 +149,25 @@ TEST_F(Snapshots, SceneOfAnotherHandIsRefused) {
   EXPECT_NE(error.find(File("scene.png")), std::string::npos) << error;
 }
 
+TEST_F(Snapshots, SceneWithADroppedObjectStillShowsTheHandAtItsSize) {
+  const auto drawn = [&](const Frame& frame) {
+    PlotScene(frame, hand_, object_, {}, File("scene.png"));
+    const cv::Mat picture =
+        cv::imread(File("scene.png"))(cv::Rect(30, 240, 640, 650));  // inside the left view
+    return cv::countNonZero(picture.reshape(1) != 255) / 3.0 / (640 * 650);
+  };
+  Frame frame = run_.back();
+  const double held = drawn(frame);
+  EXPECT_GT(held, 0.1);
+  for (const Vector3d& far :
+       {Vector3d(0, 0, -100), Vector3d(0, -5, 0), Vector3d(std::nan(""), 0, 0)}) {
+    frame.p_WO = far;
+    EXPECT_GT(drawn(frame), 0.5 * held) << far.transpose();
+  }
+  frame.q[0] = std::nan("");
+  EXPECT_NE(ErrorOf([&] { drawn(frame); }).find("not finite"), std::string::npos);
+}
+
 TEST_F(Snapshots, ContactsWithoutAHeldObjectAreRefused) {
   std::vector<Frame> idle = run_;
   for (Frame& frame : idle) frame.state = SessionState::kIdle;
