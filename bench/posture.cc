@@ -17,6 +17,7 @@
 #include "core/hand/kinematics.h"
 #include "core/hand/scenario.h"
 #include "core/quality/load_margin.h"
+#include "core/quality/manipulability.h"
 
 using namespace regrasp;
 
@@ -29,7 +30,7 @@ struct Candidate {
   Vector3d p_WO;
   double score = -1e9;
   std::vector<double> rho;  // without each finger
-  double clearance = 0, margin = 0, sigma = 0;
+  double clearance = 0, margin = 0, sigma = 0, room = 0;
 };
 
 /// Moves the tip of `finger` to `target` from `q`; false when it does not get there inside the
@@ -100,6 +101,29 @@ double Clearance(const HandModel& hand, const KinematicsData& data, const Vector
   return gap;
 }
 
+/// Largest relative gain in manipulability within 5 mm along the surface: something to climb.
+double RoomToClimb(const HandModel& hand, const Candidate& c, int f, double radius) {
+  KinematicsData data;
+  const auto Phi = [&](const JointVector& q) {
+    ForwardKinematics(hand, q, &data);
+    const Vector3d tip = FingertipCentre(hand, data, f);
+    const Vector3d n = (c.p_WO - tip).normalized();
+    return Manipulability(PointJacobian(hand, data, f, tip + n * hand.fingers[f].tip_radius));
+  };
+  const double here = Phi(c.q);
+  const Vector3d direction = (FingertipCentre(hand, data, f) - c.p_WO).normalized();
+  const Matrix3d R = RotationFromZ(direction);
+  double best = 0;
+  for (int k = 0; k < 8; ++k) {
+    const double a = k * kPi / 4;
+    const Vector3d there = (direction + 0.005 / radius * (std::cos(a) * R.col(0) + std::sin(a) * R.col(1))).normalized();
+    JointVector q = c.q;
+    if (!SolveTip(hand, f, c.p_WO + there * (radius + hand.fingers[f].tip_radius), &q)) continue;
+    best = std::max(best, Phi(q) / here - 1);
+  }
+  return best;
+}
+
 void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Candidate* c) {
   KinematicsData data;
   ForwardKinematics(hand, c->q, &data);
@@ -130,7 +154,9 @@ void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Can
     c->rho.push_back(LoadMargin(rest, 0.08 * gravity, radius, 4.0));
     if (without < last) worst_other = std::min(worst_other, c->rho.back());
   }
-  c->score = 2.0 * std::min(c->rho[last], 0.3) / 0.3 + 1.0 * std::min(c->rho[last], 1.5) +
+  c->room = 1e9;
+  for (int f = 0; f <= last; ++f) c->room = std::min(c->room, RoomToClimb(hand, *c, f, radius));
+  c->score = 1.5 * std::min(c->room, 0.08) / 0.08 + 2.0 * std::min(c->rho[last], 0.3) / 0.3 + 1.0 * std::min(c->rho[last], 1.5) +
              1.0 * std::min(worst_other, 1.0) + 1.5 * std::min(c->margin, 0.5) / 0.5 +
              1.0 * std::min(c->sigma, 0.03) / 0.03 + std::min(0.0, (c->clearance - 0.005) / 0.001);
 }
@@ -210,9 +236,10 @@ int main(int argc, char** argv) {
   Evaluate(hand, radius, gravity, &closed);
   std::printf(
       "# posture --hand %s --seed %llu --steps %d --radius %g --tilt %g\n# score %.3f, clearance "
-      "%.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, load margin without",
+      "%.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, room to climb %.1f %%, load margin without",
       name.c_str(), static_cast<unsigned long long>(seed), steps, radius * 1e3, tilt, best.score,
-      best.clearance * 1e3, open.clearance * 1e3, closed.clearance * 1e3, best.margin, best.sigma);
+      best.clearance * 1e3, open.clearance * 1e3, closed.clearance * 1e3, best.margin, best.sigma,
+              100 * best.room);
   for (int f = 0; f < hand.num_fingers(); ++f)
     std::printf(" %s %.2f N", hand.fingers[f].name.c_str(), best.rho[f]);
   std::printf("\n#");

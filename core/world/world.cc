@@ -72,6 +72,8 @@ struct World::Impl {
   void ApplyInputs();
   void ApplyJointTorques();
   void MakeContacts();
+  void ApplyJointLoads();
+  void UpdateJointLoads();
   void Integrate();
   void ReadState();
   Matrix3d LinkRotation(int link) const;
@@ -87,6 +89,16 @@ struct World::Impl {
   dJointGroupID contact_group = nullptr;
   std::vector<dBodyID> bodies;
   std::vector<dJointID> joints;  // joints[i] is articulation.joints[i]
+  // What a joint's constraint exerted on its moved body in the last step, at the anchor (and the
+  // opposite on the parent). QuickStep starts from it.
+  struct JointLoad {
+    Vector3d force_W = Vector3d::Zero();
+    Vector3d moment_W = Vector3d::Zero();
+    Vector3d arm_W = Vector3d::Zero();  // from the moved body's centre of mass to the anchor
+    dJointFeedback correction{};
+    bool moved_is_first = true;  // in the order of the ODE joint
+  };
+  std::vector<JointLoad> loads;
   dBodyID object_body = nullptr;
   dJointID stand_in_joint = nullptr;
   std::unique_ptr<Collider> collider;
@@ -196,7 +208,13 @@ void World::Impl::BuildHand(const JointVector& q0) {
       dJointSetUniversalAxis2(joint, u2.x(), u2.y(), u2.z());
     }
     joints.push_back(joint);
+    JointLoad load;
+    load.moved_is_first = plan.second < 0 || parent_body == nullptr;
+    loads.push_back(load);
   }
+  if (config.stepper == Stepper::kFast && config.warm_start > 0)
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      dJointSetFeedback(joints[i], &loads[i].correction);
   object_body = dBodyCreate(world);
   collider = std::make_unique<Collider>(hand, articulation, object, bodies, X_WL, object_body);
 }
@@ -288,6 +306,50 @@ void World::Impl::MakeContacts() {
   }
 }
 
+// QuickStep starts every step from zero constraint forces and does not converge in a few
+// iterations. So the joint forces of the last step go in as external forces, and the solver finds
+// only the change. That is exact for joints, whose rows have no bounds; contacts must start from
+// zero. The forces act at the anchor as it is now, and the moments without a part along the joint's
+// axes: so they do no work, whatever the joint does. (Forces and torques carried over as they were
+// would feed the motion.)
+void World::Impl::ApplyJointLoads() {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const JointPlan& joint = articulation.joints[i];
+    const BodyPlan& body = articulation.bodies[joint.body];
+    JointLoad& load = loads[i];
+    const Matrix3d R_WB = ToMatrix(dBodyGetRotation(bodies[joint.body]));
+    const Matrix3d R_WP = LinkRotation(joint.parent_link);
+    const Vector3d axis1_W = R_WP * (joint.R_PJ * joint.axis1_J);
+    load.arm_W = R_WB * -body.p_LB;
+    if (joint.second < 0) {
+      load.moment_W -= axis1_W * axis1_W.dot(load.moment_W);
+    } else {
+      const Vector3d across_W = axis1_W.cross(R_WB * joint.axis2_L).normalized();
+      load.moment_W = across_W * across_W.dot(load.moment_W);
+    }
+    const Vector3d &f = load.force_W, &m = load.moment_W;
+    const Vector3d T = m + load.arm_W.cross(f);
+    dBodyAddForce(bodies[joint.body], f.x(), f.y(), f.z());
+    dBodyAddTorque(bodies[joint.body], T.x(), T.y(), T.z());
+    if (body.parent < 0) continue;
+    const Vector3d arm_W = R_WP * (hand.joints[joint.first].X_PJ.translation() -
+                                   articulation.bodies[body.parent].p_LB);
+    const Vector3d T_parent = -m - arm_W.cross(f);
+    dBodyAddForce(bodies[body.parent], -f.x(), -f.y(), -f.z());
+    dBodyAddTorque(bodies[body.parent], T_parent.x(), T_parent.y(), T_parent.z());
+  }
+}
+
+void World::Impl::UpdateJointLoads() {
+  for (JointLoad& load : loads) {
+    const dJointFeedback& change = load.correction;
+    const Vector3d f = ToVector(load.moved_is_first ? change.f1 : change.f2);
+    const Vector3d T = ToVector(load.moved_is_first ? change.t1 : change.t2);
+    load.force_W = config.warm_start * (load.force_W + f);
+    load.moment_W = config.warm_start * (load.moment_W + T - load.arm_W.cross(f));
+  }
+}
+
 void World::Impl::Integrate() {
   if (config.stepper == Stepper::kExact) {
     dWorldStep(world, config.dt);
@@ -296,7 +358,9 @@ void World::Impl::Integrate() {
   // ODE's generator is global: lend it our own state for the length of the step.
   const unsigned long others = dRandGetSeed();
   dRandSetSeed(random_seed);
+  if (config.warm_start > 0) ApplyJointLoads();
   dWorldQuickStep(world, config.dt);
+  if (config.warm_start > 0) UpdateJointLoads();
   random_seed = dRandGetSeed();
   dRandSetSeed(others);
 }
@@ -429,6 +493,10 @@ void World::AddTo(StateHasher* hasher) const {
     hasher->Add(contact.p_WC);
     hasher->Add(contact.normal_W);
     hasher->Add(contact.force_W);
+  }
+  for (const Impl::JointLoad& load : w.loads) {
+    hasher->Add(load.force_W);
+    hasher->Add(load.moment_W);
   }
   if (w.faulted) return;  // the bodies belong to an abandoned world
   const auto add_body = [&](dBodyID body) {

@@ -6,9 +6,11 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "core/common/random.h"
 #include "core/hand/kinematics.h"
 #include "core/hand/scenario.h"
 #include "core/world/world.h"
@@ -286,11 +288,12 @@ TEST_P(BothSteppers, PendulumSwingsAtTheAnalyticFrequency) {
     const double omega =
         std::sqrt(bob.mass * kG * l / (bob.I_LCom(0, 0) + bob.mass * l * l + armature));
     // Time of the tenth downward zero crossing, interpolated: (10 - 3/4) periods after the start.
-    double before = world.state().q[0], crossing = 0;
+    double before = world.state().q[0], crossing = 0, amplitude = 0;
     int found = 0;
     for (int k = 1; found < 10 && k < 20000; ++k) {
       ASSERT_EQ(world.Step(), StepStatus::kOk);
       const double now = world.state().q[0];
+      if (found == 9) amplitude = std::max(amplitude, std::abs(now));
       if (before > 0 && now <= 0 && ++found == 10)
         crossing = kDt * (k - 1 + before / (before - now));
       before = now;
@@ -300,6 +303,9 @@ TEST_P(BothSteppers, PendulumSwingsAtTheAnalyticFrequency) {
     // has not converged fully.
     EXPECT_NEAR(crossing * omega / (2 * std::numbers::pi), 9.25, 0.003 * 9.25)
         << "armature " << armature;
+    // No damping: the swing must neither die nor grow (joint forces carried over between steps at
+    // the wrong place once made it grow eightfold).
+    EXPECT_NEAR(amplitude, 0.05, 0.01 * 0.05);
   }
 }
 
@@ -480,6 +486,38 @@ TEST_P(BothSteppers, EqualSeedsGiveEqualBitsEvenInterleaved) {
   EXPECT_EQ(HashOf(*second), expected);
   if (GetParam() == Stepper::kFast) {
     EXPECT_NE(HashOf(*other), expected) << "the seed must matter";
+  }
+}
+
+TEST_P(BothSteppers, SurvivesFullEffortNoise) {
+  // The worst that a controller can ask for: full effort of random sign, new in every tick and then
+  // held for 50 ticks, with the ball among the fingers and every joint thrown at its stops.
+  for (const int hold : {1, 50}) {
+    World world(Shadow().hand, Shadow().object, Config(GetParam()), GraspPosture(Shadow().hand),
+                GraspObjectPose(), 1);
+    world.SetGravity(GraspGravity());
+    RandomStream random(3, 0);
+    JointVector torque = JointVector::Zero(Shadow().hand.num_joints());
+    double drift = 0;
+    for (int k = 0; k < 2000; ++k) {
+      if (k % hold == 0)
+        for (int i = 0; i < torque.size(); ++i)
+          torque[i] = (random.Uniform() < 0.5 ? -1 : 1) * Shadow().hand.joints[i].effort;
+      world.SetTorque(torque);
+      ASSERT_EQ(world.Step(), StepStatus::kOk) << "tick " << k << ": " << world.fault_message();
+      drift = std::max(drift, world.JointDrift());
+    }
+    // Joints may give by millimetres under ten times the torque of a grasp, but must not come
+    // apart.
+    EXPECT_LT(drift, 5e-3) << "held for " << hold;
+    RecordProperty("drift_um_" + std::to_string(hold), static_cast<int>(1e6 * drift));
+    // And it comes to rest again.
+    for (int k = 0; k < 2000; ++k) {
+      world.SetTorque(Compensation(world));
+      ASSERT_EQ(world.Step(), StepStatus::kOk) << world.fault_message();
+    }
+    EXPECT_LT(world.JointDrift(), 30e-6);
+    EXPECT_LT(world.state().qdot.cwiseAbs().maxCoeff(), 0.1);
   }
 }
 
