@@ -238,11 +238,11 @@ void Show::Explorations(int repeats) {
           (first.start_hash == second.start_hash ? ", the same bits"
                                                  : " and " + second.start_hash.substr(0, 8)),
       first.start_hash == second.start_hash);
-  Add("fig. 2: linear sum", Rise(second.record), At(second.record, "state") == "done");
+  Add("fig. 2: linear sum", Rise(second.record), Rose(second.record));
   const double least = std::min(first.least_stability, second.least_stability);
   Add("fig. 2: stable throughout",
       fmt::format("stability at least {:.3f}, threshold {:.3f}", least, threshold),
-      least > 0 && Call("status").at("state") != "dropped");
+      least >= threshold && Call("status").at("state") != "dropped");
 
   Say(fmt::format("{} repeats with other gradient directions", repeats));
   int rose = 0;
