@@ -37,7 +37,10 @@ void CheckNumber(const ParamSpec& spec, const JsonIn& value, bool integer) {
   if (!std::isfinite(number)) Refuse(spec, fmt::format("{} is not finite", spec.name));
   if (integer && number != std::floor(number))
     Refuse(spec, fmt::format("{} = {}: expected {}", spec.name, Shown(value), Name(spec.type)));
-  if (number < spec.min || number > spec.max)
+  // Beyond 2^53 the conversion to double rounds: compare the integer itself.
+  const bool rounded = value.is_number_unsigned() &&
+                       value.get<std::uint64_t>() > static_cast<std::uint64_t>(kMaxSafeInteger);
+  if (number < spec.min || number > spec.max || (integer && rounded))
     Refuse(spec, fmt::format("{} = {} is out of range", spec.name, Shown(value)),
            fmt::format("allowed: {}", Range(spec)));
 }

@@ -78,7 +78,13 @@ std::optional<RequestId> ReadId(const JsonIn& message) {
   if (it == message.end()) return {};
   if (it->is_string() && it->get_ref<const std::string&>().size() <= kMaxIdBytes)
     return it->get<std::string>();
-  if (it->is_number()) {
+  constexpr auto kMax = static_cast<std::int64_t>(kMaxSafeInteger);
+  if (it->is_number_unsigned() && it->get<std::uint64_t>() > static_cast<std::uint64_t>(kMax)) return {};
+  if (it->is_number_integer()) {
+    const auto value = it->get<std::int64_t>();
+    return value >= -kMax && value <= kMax ? std::optional<RequestId>(value) : std::nullopt;
+  }
+  if (it->is_number_float()) {
     const double value = it->get<double>();
     if (std::abs(value) <= kMaxSafeInteger && value == std::floor(value))
       return static_cast<std::int64_t>(value);

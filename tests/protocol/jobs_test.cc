@@ -1,0 +1,182 @@
+// Jobs, the clock, and repeatability, over the wire.
+
+#include <gtest/gtest.h>
+
+#include "tests/protocol/daemon_fixture.h"
+
+namespace regrasp::test {
+namespace {
+
+class Jobs : public DaemonTest {
+ protected:
+  void SetUp() override {
+    Start();
+    client = Connect();
+  }
+  Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
+  void Step(int ticks) {
+    const Json record = Wait(client->Result("step", {{"ticks", ticks}})["job"]);
+    EXPECT_EQ(record["state"], "done") << record.dump();
+  }
+  std::unique_ptr<TestClient> client;
+};
+
+TEST_F(Jobs, AreQueuedWhilePausedAndStartAtTheNextTick) {
+  const Json job = client->Result("grasp")["job"];
+  EXPECT_EQ(client->Result("job.get", {{"id", job}})["state"], "queued");
+  EXPECT_EQ(client->Result("status")["state"], "idle");
+  Step(1);
+  const Json record = client->Result("job.get", {{"id", job}});
+  EXPECT_EQ(record["state"], "running");
+  EXPECT_EQ(record["start_tick"], 0);
+  EXPECT_EQ(record["end_tick"], Json());
+  EXPECT_EQ(client->Result("status")["state"], "grasping");
+}
+
+TEST_F(Jobs, ASecondOneIsBusyEvenBeforeTheFirstHasBegun) {
+  client->Result("grasp");
+  EXPECT_EQ(client->Error("grasp"), -32001);
+  EXPECT_EQ(client->Error("explore", {{"finger", "ring"}}), -32001);
+  EXPECT_EQ(client->Result("job.list")["jobs"].size(), 1u);  // refused ones leave no record
+}
+
+TEST_F(Jobs, StepsAreExact) {
+  Step(7);
+  EXPECT_EQ(client->Result("status")["tick"], 7);
+  Step(1003);
+  EXPECT_EQ(client->Result("status")["tick"], 1010);
+  EXPECT_EQ(client->Result("status")["time_s"], 1.010);
+  EXPECT_EQ(client->Result("status")["paused"], true);
+}
+
+TEST_F(Jobs, AStepNeedsAStoppedClock) {
+  EXPECT_EQ(client->Result("resume")["paused"], false);
+  EXPECT_EQ(client->Error("step"), -32002);
+  EXPECT_EQ(client->Result("pause")["paused"], true);
+  const Json tick = client->Result("status")["tick"];
+  EXPECT_EQ(client->Result("status")["tick"], tick);
+  Step(1);
+  EXPECT_EQ(client->Result("status")["tick"], tick.get<int>() + 1);
+}
+
+TEST_F(Jobs, AStepCanBeCancelled) {
+  const Json job = client->Result("step", {{"ticks", 1'000'000'000}})["job"];
+  EXPECT_EQ(client->Error("step"), -32001);
+  EXPECT_EQ(client->Result("job.cancel", {{"id", job}})["state"], "cancelled");
+  EXPECT_EQ(Wait(job)["state"], "cancelled");
+  Step(1);
+}
+
+TEST_F(Jobs, WaitIsOvertakenByWhatComesAfterIt) {
+  const Json job = client->Result("grasp")["job"];
+  client->Send(
+      Json({{"jsonrpc", "2.0"}, {"id", "wait"}, {"method", "job.wait"}, {"params", {{"id", job}}}})
+          .dump() +
+      "\n");
+  EXPECT_TRUE(client->Ask("version").contains("result"));  // the wait blocks nothing
+  client->Result("job.cancel", {{"id", job}});
+  client->Send(R"({"jsonrpc":"2.0","id":"step","method":"step","params":{"ticks":3}})"
+               "\n");
+  // Which of these two comes first is not promised.
+  Json answer = client->Receive();
+  if (answer["id"] == "step") answer = client->Receive();
+  EXPECT_EQ(answer["id"], "wait");
+  EXPECT_EQ(answer["result"]["state"], "cancelled") << answer.dump();
+}
+
+TEST_F(Jobs, WaitTimesOut) {
+  const Json job = client->Result("grasp")["job"];
+  const Json answer = client->Ask("job.wait", {{"id", job}, {"timeout_s", 0.01}});
+  EXPECT_EQ(answer["error"]["code"], -32004);
+  EXPECT_EQ(client->Result("job.get", {{"id", job}})["state"], "queued");
+}
+
+TEST_F(Jobs, AResetEndsThem) {
+  const Json job = client->Result("grasp")["job"];
+  Step(100);
+  client->Result("reset");
+  EXPECT_EQ(Wait(job)["state"], "cancelled");
+  const Json queued = client->Result("grasp")["job"];
+  client->Result("reset");
+  const Json record = Wait(queued);
+  EXPECT_EQ(record["state"], "cancelled");
+  EXPECT_FALSE(record["error"].is_null());
+  EXPECT_EQ(client->Error("grasp"), 0);
+}
+
+TEST_F(Jobs, AnExplorationsRecordIsComplete) {
+  const Json grasp = client->Result("grasp")["job"];
+  Step(6000);
+  ASSERT_EQ(Wait(grasp)["state"], "done");
+  const Json job =
+      client->Result("explore", {{"finger", "ring"}, {"seed", 4}, {"max_cycles", 300}})["job"];
+  Step(12000);
+  const Json record = Wait(job);
+  for (const char* field :
+       {"finger", "criterion", "converged", "reason", "cycles", "phi_initial", "phi_final",
+        "path_length_m", "seed", "phi_true_initial", "phi_true_final", "id", "method", "state",
+        "error", "progress", "start_tick", "end_tick"})
+    EXPECT_TRUE(record.contains(field)) << field;
+  EXPECT_EQ(record["finger"], "ring");
+  EXPECT_EQ(record["seed"], 4);
+  EXPECT_EQ(record["start_tick"], 6000);
+  EXPECT_FALSE(record["reason"].is_null());
+  EXPECT_EQ(client->Result("quality")["fingers"].size(), 5u);
+  for (const Json& contact : client->Result("truth")["contacts"])
+    for (const char* field : {"link", "finger", "p_WC_m", "normal_W", "force_W_n", "depth_m"})
+      EXPECT_TRUE(contact.contains(field)) << field;
+  const Json plot = client->Result("plot", {{"name", "quality"}, {"file", "q.png"}});
+  EXPECT_GT(std::filesystem::file_size(plot["path"].get<std::string>()), 1000u);
+}
+
+TEST_F(Jobs, TheListKeepsTheLast256) {
+  for (int i = 0; i < 260; ++i) Step(1);
+  const Json jobs = client->Result("job.list")["jobs"];
+  ASSERT_EQ(jobs.size(), 256u);
+  EXPECT_EQ(jobs.front()["id"], 5);
+  EXPECT_EQ(jobs.back()["id"], 260);
+  EXPECT_EQ(client->Error("job.get", {{"id", 4}}), -32003);
+}
+
+TEST_F(Jobs, TooManyWaitingCommandsAreBusyAndTheClockStillObeys) {
+  int accepted = 0;
+  while (client->Error("noise.set", {{"position_m", 0.001}}) == 0 && accepted < 1000) ++accepted;
+  EXPECT_EQ(accepted, 64);
+  Step(1);
+  EXPECT_EQ(client->Error("noise.set", {{"position_m", 0.001}}), 0);
+}
+
+/// Runs a script and returns the hash at its end; with a watcher, all topics are streamed
+/// meanwhile.
+std::string HashOfScript(const std::string& socket, bool watched) {
+  TestClient client(socket);
+  // Parameters outlive a reset: begin with the same one each time.
+  client.Result("param.set", {{"name", "object.friction"}, {"value", 0.8}});
+  client.Result("reset", {{"seed", 9}});
+  std::unique_ptr<TestClient> watcher;
+  if (watched) {
+    watcher = std::make_unique<TestClient>(socket);
+    for (const char* topic : {"status", "contacts", "quality", "joints", "truth", "events"})
+      watcher->Send(Json({{"jsonrpc", "2.0"},
+                          {"method", "subscribe"},
+                          {"params", {{"topic", topic}, {"rate_hz", 100}}}})
+                        .dump() +
+                    "\n");
+  }
+  client.Result("grasp");
+  client.Result("job.wait", {{"id", client.Result("step", {{"ticks", 2000}})["job"]}});
+  client.Result("param.set", {{"name", "object.friction"}, {"value", 0.7}});
+  client.Result("job.wait",
+                {{"id", client.Result("step", {{"ticks", watched ? 1000 : 400}})["job"]}});
+  if (!watched) client.Result("job.wait", {{"id", client.Result("step", {{"ticks", 600}})["job"]}});
+  EXPECT_EQ(client.Result("status")["tick"], 3000);
+  return client.Result("status")["state_hash"];
+}
+
+TEST_F(Jobs, TheSameScriptGivesTheSameBitsWatchedOrNot) {
+  client.reset();
+  EXPECT_EQ(HashOfScript(config.socket, false), HashOfScript(config.socket, true));
+}
+
+}  // namespace
+}  // namespace regrasp::test
