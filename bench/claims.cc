@@ -30,7 +30,7 @@ namespace {
 struct Options {
   std::string what, noise = "paper", object, criterion = "manipulability",
                     estimator = "least_squares", finger;
-  int seeds = 5, jobs = 2;
+  int seeds = 5, jobs = 2, iterations = 0;
   std::uint64_t first = 1;
   double seconds = 60;
   bool exact = false, rows = false;
@@ -45,6 +45,7 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
+  if (o.iterations > 0) config.world.iterations = o.iterations;
   if (o.exact) config.world.stepper = Stepper::kExact;
   for (const auto& [name, value] : o.set) {
     const int index = FindParameter(name);
@@ -332,6 +333,7 @@ int main(int argc, char** argv) {
       o.jobs = std::stoi(next());
     else if (a == "--exact")
       o.exact = true;
+    else if (a == "--iterations") o.iterations = std::stoi(next());
     else if (a == "--rows")
       o.rows = true;
     else if (a == "--set") {

@@ -14,6 +14,7 @@ struct ControlParameters {
   double force_filter_s = 0.010;
   double contact_filter_s = 0.030;
   double pose_filter_s = 0.050;
+  double contact_from_normal = 1;       ///< 1: contact point from the sensed normal and the fingertip's known shape
   // Object wrench: PI law on the object pose.
   double position_stiffness = 200;      ///< [N/m]
   double position_integral = 300;       ///< [N/(m s)]

@@ -8,6 +8,11 @@ namespace regrasp {
 namespace {
 
 constexpr double kSettle_s = 0.15;
+constexpr double kRemember_s = 0.15;  // low pass on phi and position before a best point is believed
+constexpr double kWorthReturning = 1.005;
+constexpr double kReturnGain = 8.0;   // 1/s
+constexpr double kReturned_m = 0.0005;
+constexpr double kReturnLimit_s = 2.5;
 constexpr double kLost_s = 0.30;  // sliding without contact for so long ends the exploration
 
 }  // namespace
@@ -23,6 +28,25 @@ void FingerExploration::Stop() { stop_ = true; }
 void FingerExploration::EnterPhase(Phase phase) {
   phase_ = phase;
   ticks_ = 0;
+}
+
+void FingerExploration::Remember(const Estimate& estimate, double dt) {
+  const FingerEstimate& finger = estimate.fingers[request_.finger];
+  const Vector3d p_OC = estimate.q_WO.conjugate() * (finger.p_WC - estimate.p_WO);
+  const double gain = dt / (kRemember_s + dt);
+  phi_smooth_ += gain * (phi_ - phi_smooth_);
+  p_OC_smooth_ += gain * (p_OC - p_OC_smooth_);
+  if (phi_smooth_ <= phi_best_) return;
+  phi_best_ = phi_smooth_;
+  p_OC_best_ = p_OC_smooth_;
+}
+
+void FingerExploration::EndSlide(const Estimate& estimate, HybridController* controller) {
+  phi_final_ = phi_;
+  slide_ended_ = true;
+  stop_ = false;
+  controller->RestHere(estimate, request_.finger);
+  EnterPhase(Phase::kReload);
 }
 
 void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
@@ -71,30 +95,44 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
       stop_ = false;
     } else if (ticks_ * dt >= kSettle_s) {
       EnterPhase(Phase::kSlide);
-      phi_initial_ = phi_final_ = phi_;
+      phi_initial_ = phi_final_ = phi_smooth_ = phi_best_ = phi_;
+      p_OC_smooth_ = p_OC_best_ =
+          estimate.q_WO.conjugate() * (finger.p_WC - estimate.p_WO);
       slide_began_ = true;
       algorithm_.Start(input, request_.estimator, request_.seed, request_.max_cycles, parameters);
     }
     return;
   }
 
-  const SurfaceExploration::Status status = algorithm_.Update(input, parameters, dt);
-  if (status == SurfaceExploration::Status::kConverged) {
-    end_ = End::kGradient;
-  } else if (status == SurfaceExploration::Status::kMaxCycles) {
-    end_ = End::kMaxCycles;
-  } else if (finger.ticks_without_contact * dt > kLost_s) {
-    end_ = End::kContactLost;
+  if (finger.ticks_without_contact * dt > kLost_s) end_ = End::kContactLost;
+  if (end_ == End::kContactLost || stop_) {
+    EndSlide(estimate, controller);
+    return;
   }
-  if (end_ == End::kNone && !stop_) {
+  if (phase_ == Phase::kReturn) {
+    const Vector3d p_best_W = estimate.p_WO + estimate.q_WO * p_OC_best_;
+    const Vector3d error = TangentPart(p_best_W - finger.p_WC, finger.normal_W);
+    const double distance = error.norm();
+    if (distance < kReturned_m || ticks_ * dt > kReturnLimit_s) {
+      EndSlide(estimate, controller);
+    } else {
+      task.v_W = error * (std::min(parameters.speed_max, kReturnGain * distance) / distance);
+    }
+    return;
+  }
+
+  Remember(estimate, dt);
+  const SurfaceExploration::Status status = algorithm_.Update(input, parameters, dt);
+  if (status == SurfaceExploration::Status::kRunning) {
     task.v_W = algorithm_.velocity_W();
     return;
   }
-  phi_final_ = phi_;
-  slide_ended_ = true;
-  stop_ = false;
-  controller->RestHere(estimate, request_.finger);
-  EnterPhase(Phase::kReload);
+  end_ = status == SurfaceExploration::Status::kConverged ? End::kGradient : End::kMaxCycles;
+  if (request_.estimator == Estimator::kLeastSquares && phi_best_ > kWorthReturning * phi_smooth_) {
+    EnterPhase(Phase::kReturn);
+  } else {
+    EndSlide(estimate, controller);
+  }
 }
 
 void FingerExploration::AddTo(StateHasher* hasher) const {
@@ -106,6 +144,8 @@ void FingerExploration::AddTo(StateHasher* hasher) const {
   hasher->Add(request_.criterion);
   hasher->Add(on_stability_);
   hasher->Add(phi_initial_);
+  hasher->Add(phi_best_);
+  hasher->Add(p_OC_best_);
   algorithm_.AddTo(hasher);
 }
 

@@ -15,6 +15,7 @@ class FingerExploration {
     kUnload,  ///< its force ramps down to the exploring force, the others take over
     kSettle,  ///< the finger presses with the exploring force and waits for the filters
     kSlide,   ///< Algorithm 1
+    kReturn,  ///< back to the best point it met, if the last one is worse (not with the printed rule)
     kReload,  ///< its force ramps up again
     kDone,
   };
@@ -39,7 +40,8 @@ class FingerExploration {
 
   const Request& request() const { return request_; }
   Phase phase() const { return phase_; }
-  /// True in the tick in which sliding begins / ends: the moments at which phi is judged.
+  /// True in the tick in which sliding begins, and in which it ends (after kReturn): the moments at which
+  /// phi is judged.
   bool slide_began() const { return slide_began_; }
   bool slide_ended() const { return slide_ended_; }
   End end() const { return end_; }
@@ -52,6 +54,9 @@ class FingerExploration {
 
  private:
   void EnterPhase(Phase phase);
+  /// Low-passes phi and the contact point and remembers where phi was best, in the object's frame.
+  void Remember(const Estimate& estimate, double dt);
+  void EndSlide(const Estimate& estimate, HybridController* controller);
 
   Request request_;
   Phase phase_ = Phase::kIdle;
@@ -60,6 +65,8 @@ class FingerExploration {
   bool on_stability_ = false;
   End end_ = End::kNone;
   double phi_ = 0, phi_initial_ = 0, phi_final_ = 0;
+  double phi_smooth_ = 0, phi_best_ = 0;
+  Vector3d p_OC_smooth_ = Vector3d::Zero(), p_OC_best_ = Vector3d::Zero();
   SurfaceExploration algorithm_;
 };
 

@@ -19,6 +19,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"control.close_force", "N", 0.02, 2, 1, "A finger that has touched while the hand closes waits with this force.", kOurs, [](P& p) { return &p.control.close_force; }},
   {"control.close_speed", "rad/s", 0.05, 3, 1, "Speed of the fastest joint while the hand closes.", kOurs, [](P& p) { return &p.control.close_speed; }},
   {"control.contact_filter_s", "s", 0, 1, 1, "Time constant of the low pass on contact points and normals, in the fingertip's frame.", kMeasured, [](P& p) { return &p.control.contact_filter_s; }},
+  {"control.contact_from_normal", "", 0, 1, 1, "1: place a contact on the fingertip's known surface by its sensed normal; 0: trust the sensed position alone.", kMeasured, [](P& p) { return &p.control.contact_from_normal; }},
   {"control.drop_distance", "m", 0.005, 0.5, 1, "An object sensed this far from where control wants it counts as dropped.", kOurs, [](P& p) { return &p.control.drop_distance; }},
   {"control.force_filter_s", "s", 0, 1, 1, "Time constant of the low pass on contact forces.", kMeasured, [](P& p) { return &p.control.force_filter_s; }},
   {"control.force_integral_limit", "N", 0, 20, 1, "Largest change of the integrated object force from its start value, per axis.", kMeasured, [](P& p) { return &p.control.force_integral_limit; }},

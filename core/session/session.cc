@@ -27,6 +27,7 @@ constexpr double kReleasePullTime_s = 0.01;
 ControlParameters Unfiltered(ControlParameters parameters) {
   parameters.joint_filter_s = parameters.force_filter_s = 0;
   parameters.contact_filter_s = parameters.pose_filter_s = 0;
+  parameters.contact_from_normal = 0;
   return parameters;
 }
 
