@@ -6,12 +6,14 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 
+#include "core/common/nearest_name.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
 #include "core/protocol/methods.h"
@@ -126,6 +128,20 @@ DaemonConfig Resolve(const Flags& f) {
   return config;
 }
 
+/// The first argument nobody wanted, and the flag it may have meant (the library names neither
+/// well).
+std::string Unexpected(const CLI::App& app) {
+  const std::vector<std::string> extras = app.remaining();
+  const auto flag =
+      std::ranges::find_if(extras, [](const std::string& a) { return a.starts_with('-'); });
+  const std::string argument = flag != extras.end() ? *flag : extras.front();
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  const std::string_view near = NearestName(argument, names);
+  return fmt::format("unknown argument {}{}", argument,
+                     near.empty() ? "" : fmt::format("; did you mean {}?", near));
+}
+
 int Serve(const DaemonConfig& config) {
   StartLog(config);
   std::signal(SIGPIPE, SIG_IGN);
@@ -146,6 +162,8 @@ int Main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);
+  } catch (const CLI::ExtrasError& e) {
+    return Fail(Unexpected(app), "regraspd --help", ExitCode::kUsage);
   } catch (const CLI::ParseError& e) {
     return Fail(e.what(), "regraspd --help", ExitCode::kUsage);
   }
