@@ -79,7 +79,8 @@ std::optional<RequestId> ReadId(const JsonIn& message) {
   if (it->is_string() && it->get_ref<const std::string&>().size() <= kMaxIdBytes)
     return it->get<std::string>();
   constexpr auto kMax = static_cast<std::int64_t>(kMaxSafeInteger);
-  if (it->is_number_unsigned() && it->get<std::uint64_t>() > static_cast<std::uint64_t>(kMax)) return {};
+  if (it->is_number_unsigned() && it->get<std::uint64_t>() > static_cast<std::uint64_t>(kMax))
+    return {};
   if (it->is_number_integer()) {
     const auto value = it->get<std::int64_t>();
     return value >= -kMax && value <= kMax ? std::optional<RequestId>(value) : std::nullopt;
