@@ -3,6 +3,8 @@
 //   claims hold      [--seeds N] [--first S] [--seconds T]   six gravity directions
 //   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg
 //   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
+//   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all] [--speed DEG_S]
+//                   [--explore]
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
 // Common: --noise PRESET --object NAME --set NAME=VALUE (repeatable) --exact --rows (a line per
 // trial). Trials run in two processes (--jobs N); each is reproducible alone from its seed.
@@ -32,8 +34,9 @@ struct Options {
                     estimator = "least_squares", finger;
   int seeds = 5, jobs = 2, iterations = 0;
   std::uint64_t first = 1;
-  double seconds = 60;
-  bool exact = false, rows = false;
+  double seconds = 60, turns = 1, speed = 0;
+  std::string axis = "0,0,-1";
+  bool exact = false, rows = false, exploring = false;
   std::vector<std::pair<std::string, double>> set;
 };
 
@@ -282,6 +285,139 @@ int Explore(const Options& o) {
   return 0;
 }
 
+/// One regrasp whose objective was manipulability.
+struct PhiChange {
+  int finger;
+  double before, start, after;
+};
+
+/// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused, dropped, angle
+/// error deg, explored on manipulability, rose before-to-after, started below 98 % of best, of them rose,
+/// mean change start-to-after, link-link ticks}
+Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
+  if (!Grasp(session)) return {kFailed};
+  Command c;
+  c.type = CommandType::kRotate;
+  c.job = 1000;
+  c.angle_rad = 2 * M_PI * o.turns;
+  c.axis_W = axis;
+  c.speed_rad_s = o.speed * M_PI / 180;
+  session.Apply(c);
+  JobRecord job;
+  double slips = 0, refused = 0, touching = 0;
+  std::vector<PhiChange> changes;
+  const auto limit = session.tick() + static_cast<std::int64_t>(std::abs(o.turns) * 1000 * 1000) + 30000;
+  while (job.id == 0 && session.tick() < limit) {
+    session.Tick();
+    touching += session.truth().link_link_contacts > 0;
+    for (const Event& e : session.TakeEvents()) {
+      slips += e.kind == EventKind::kSlip;
+      refused += e.kind == EventKind::kRefused;
+      if (e.kind != EventKind::kRegrasp) continue;
+      const RegraspRecord& r = session.last_regrasp();
+      if (o.exploring && r.criterion != Criterion::kStability && !r.on_stability && !r.aborted)
+        changes.push_back({r.finger, r.phi_before, r.phi_start, r.phi_after});
+    }
+    for (const JobRecord& j : session.TakeFinishedJobs()) job = j;
+  }
+  if (job.id == 0) {
+    std::snprintf(job.error, sizeof(job.error), "not finished after %.0f s", session.tick() * 1e-3);
+    job.state = JobState::kFailed;
+  }
+  std::map<int, double> best;
+  for (const PhiChange& p : changes) best[p.finger] = std::max({best[p.finger], p.before, p.after});
+  double rose = 0, low = 0, low_rose = 0, gain = 0;
+  for (const PhiChange& p : changes) {
+    rose += p.after > p.before;
+    gain += p.after / p.start - 1;
+    if (p.before >= 0.98 * best[p.finger]) continue;
+    low += 1;
+    low_rose += p.after > p.before;
+  }
+  const RotateResult& r = job.rotate;
+  const double wanted = o.turns * 360, angle = r.angle_rad * 180 / M_PI;
+  if (o.rows || job.state != JobState::kDone)
+    std::fprintf(stderr,
+                 "  seed %llu %s %.1f deg in %.1f s  offset %.2f mm  tilt %.1f deg  regrasps %d  slips %.0f  "
+                 "refused %.0f  link-link %.1f %%  %s\n",
+                 static_cast<unsigned long long>(seed), Name(job.state).data(), angle, r.sim_time_s,
+                 r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps, slips, refused,
+                 r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
+  return {job.state == JobState::kDone ? 1.0 : 0.0,
+          angle,
+          r.sim_time_s > 0 ? std::abs(angle) / r.sim_time_s * 60 : 0,
+          r.max_position_error_m * 1e3,
+          r.max_tilt_rad * 180 / M_PI,
+          static_cast<double>(r.regrasps),
+          slips,
+          refused,
+          r.dropped ? 1.0 : 0.0,
+          std::abs(angle - wanted),
+          static_cast<double>(changes.size()),
+          rose,
+          low,
+          low_rose,
+          changes.empty() ? 0 : gain / static_cast<double>(changes.size()),
+          touching};
+}
+
+int Rotate(const Options& o) {
+  std::vector<std::pair<std::string, Vector3d>> axes;
+  if (o.axis == "all") {
+    axes = {{"+x", {1, 0, 0}},  {"-x", {-1, 0, 0}}, {"+y", {0, 1, 0}},
+            {"-y", {0, -1, 0}}, {"+z", {0, 0, 1}},  {"-z", {0, 0, -1}}};
+  } else {
+    Vector3d a;
+    if (std::sscanf(o.axis.c_str(), "%lf,%lf,%lf", &a[0], &a[1], &a[2]) != 3 || a.norm() == 0) {
+      std::fprintf(stderr, "claims: --axis wants X,Y,Z or all\n");
+      return 2;
+    }
+    axes = {{o.axis, a.normalized()}};
+  }
+  for (const auto& [label, axis] : axes) {
+    const auto rows = Parallel(o.seeds, o.jobs, [&, a = axis](int k) {
+      Session session(MakeConfig(o, o.first + k, o.object));
+      return RotateTrial(session, o, a, o.first + k);
+    });
+    int done = 0, failed = 0, dropped = 0;
+    std::vector<double> rate, offset, tilt, error, slips, refused, gain;
+    double explored = 0, rose = 0, low = 0, low_rose = 0;
+    for (const Row& r : rows) {
+      if (r.empty() || r[0] == kFailed) {
+        ++failed;
+        continue;
+      }
+      done += r[0] == 1.0;
+      dropped += r[8] != 0;
+      if (r[0] == 1.0) {
+        rate.push_back(r[2]);
+        error.push_back(r[9]);
+      }
+      offset.push_back(r[3]);
+      tilt.push_back(r[4]);
+      slips.push_back(r[6]);
+      refused.push_back(r[7]);
+      gain.push_back(r[14]);
+      explored += r[10];
+      rose += r[11];
+      low += r[12];
+      low_rose += r[13];
+    }
+    std::printf(
+        "%-8s %.3g turns  done %2d/%-2zu  dropped %d  not grasped %d  mean %5.1f deg/min  offset max %.2f mm "
+        " tilt max %.1f deg  angle error max %.1f deg  slips %.1f  refused %.1f\n",
+        label.c_str(), o.turns, done, rows.size(), dropped, failed, Mean(rate), Max(offset), Max(tilt),
+        Max(error), Mean(slips), Mean(refused));
+    if (explored > 0)
+      std::printf(
+          "         manipulability rose in %.0f of %.0f regrasps, in %.0f of %.0f that began below 98 %% of the "
+          "best; by Algorithm 1 alone %+.1f %%\n",
+          rose, explored, low_rose, low, 100 * Mean(gain));
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
 int Repeat(const Options& o) {
   std::uint64_t hash[2];
   for (std::uint64_t& h : hash) {
@@ -329,6 +465,17 @@ int main(int argc, char** argv) {
       o.estimator = next();
     else if (a == "--finger")
       o.finger = next();
+    else if (a == "--turns")
+      o.turns = std::stod(next());
+    else if (a == "--angle")
+      o.turns = std::stod(next()) / 360;
+    else if (a == "--explore") {
+      o.exploring = true;
+      o.set.emplace_back("gait.mode", 0);
+    } else if (a == "--axis")
+      o.axis = next();
+    else if (a == "--speed")
+      o.speed = std::stod(next());
     else if (a == "--jobs")
       o.jobs = std::stoi(next());
     else if (a == "--exact")
@@ -348,9 +495,10 @@ int main(int argc, char** argv) {
   if (o.what == "hold") return Hold(o);
   if (o.what == "objects") return Objects(o);
   if (o.what == "explore") return Explore(o);
+  if (o.what == "rotate") return Rotate(o);
   if (o.what == "repeat") return Repeat(o);
   std::fprintf(
       stderr,
-      "usage: claims hold|objects|explore|repeat [options]; see the head of bench/claims.cc\n");
+      "usage: claims hold|objects|explore|rotate|repeat [options]; see the head of bench/claims.cc\n");
   return 2;
 }

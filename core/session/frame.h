@@ -75,7 +75,7 @@ enum class EventKind : std::uint8_t {
   kJobStarted, kJobFinished,  ///< value = job id
   kContactLost, kContactMade, ///< finger
   kCriterion,        ///< value = 1: stability became the objective, 0: manipulability
-  kDropped, kFault, kGaitPhase, kRefused, kSlip, kNoise, kParameter, kPush, kReset, kStandIn,
+  kDropped, kFault, kGaitPhase, kRefused, kSlip, kNoise, kParameter, kPush, kReset, kStandIn, kRegrasp,
 };
 std::string_view Name(EventKind kind);      ///< "state", "job_started", ...
 

@@ -42,6 +42,18 @@ struct RotateResult {
   double sim_time_s = 0;
 };
 
+/// One regrasp of the finger gait, judged by the truth (noise-free phi; stability or manipulability,
+/// whichever was the objective).
+struct RegraspRecord {
+  int finger = -1;
+  Criterion criterion = Criterion::kManipulability;
+  bool on_stability = false;       ///< `switched`: stability was the objective at the end
+  bool aborted = false;
+  double phi_before = 0;           ///< before the finger left
+  double phi_start = 0;            ///< where Algorithm 1 began; phi_before without exploration
+  double phi_after = 0;            ///< when the finger was back in the grasp
+};
+
 struct JobRecord {
   std::int64_t id = 0;
   JobMethod method = JobMethod::kGrasp;

@@ -78,6 +78,7 @@ std::string_view Name(EventKind kind) {
     case EventKind::kPush: return "push";
     case EventKind::kReset: return "reset";
     case EventKind::kStandIn: return "stand_in";
+    case EventKind::kRegrasp: return "regrasp";
   }
   return "";
 }

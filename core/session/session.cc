@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "core/common/random.h"
 #include "core/control/grasp_sequence.h"
 #include "core/control/hybrid_controller.h"
 #include "core/exploration/finger_exploration.h"
+#include "core/gait/finger_gait.h"
 #include "core/quality/manipulability.h"
 #include "core/sensing/sensors.h"
 #include "core/session/quality_monitor.h"
@@ -142,6 +145,8 @@ struct Session::Impl {
     controller = HybridController(hand, dt);
     grasp = GraspSequence(hand, dt);
     exploration = FingerExploration();
+    gait = FingerGait();
+    regrasp = RegraspRecord();
     monitor = QualityMonitor();
     q_open = q0;
     tick = 0;
@@ -271,7 +276,9 @@ struct Session::Impl {
         Enter(SessionState::kExploring);
         break;
       case CommandType::kRotate:
-        return Refuse(command, {Verdict::Kind::kBadState, "rotation is not available", "regrasp explore"});
+        StartJob(command, JobMethod::kRotate);
+        StartRotation(command);
+        break;
       case CommandType::kStop:
         StopJob();
         break;
@@ -333,6 +340,9 @@ struct Session::Impl {
         job.explore.reason = ExploreReason::kCancelled;
         exploration.Stop();
         break;
+      case JobMethod::kRotate:
+        gait.Stop();
+        break;
       default:
         break;  // letting go takes half a second and is not interrupted
     }
@@ -382,7 +392,9 @@ struct Session::Impl {
       job.explore.reason = ExploreReason::kDropped;
       JudgeExplorationEnd();
     }
+    if (state == SessionState::kRotating) job.rotate.dropped = true;
     exploration = FingerExploration();
+    gait = FingerGait();
     Emit(EventKind::kDropped, -1, distance, "dropped: object %.0f mm from its place, %d fingers touch",
          distance * 1e3, touching);
     FinishJob(JobState::kFailed, "the object was dropped");
@@ -448,6 +460,103 @@ struct Session::Impl {
     Enter(SessionState::kHolding);
   }
 
+  // ---- rotation -------------------------------------------------------------------------------------
+  void StartRotation(const Command& command) {
+    FingerGait::Request request;
+    request.angle_rad = command.angle_rad;
+    request.continuous = command.continuous;
+    request.axis_W = command.axis_W.normalized();
+    request.speed_rad_s = command.speed_rad_s;
+    request.seed = seed;
+    gait.Start(request, hand, estimator.estimate(), controller.wrench(), GraspFingers());
+    q_WO_start = world->state().q_WO;
+    motion = ObjectMotion();
+    Enter(SessionState::kRotating);
+  }
+
+  /// The truth about the rotation so far, every tick so that no turn is missed.
+  void JudgeRotation() {
+    RotateResult& r = job.rotate;
+    const WorldState& truth = world->state();
+    const Vector3d& axis = gait.request().axis_W;
+    const Quaterniond q = truth.q_WO * q_WO_start.conjugate();
+    const double twist = 2.0 * std::atan2(q.vec().dot(axis), q.w());
+    r.angle_rad += std::remainder(twist - r.angle_rad, 2.0 * std::numbers::pi);
+    r.turns = r.angle_rad / (2.0 * std::numbers::pi);
+    r.max_tilt_rad = std::max(r.max_tilt_rad, std::acos(std::clamp(axis.dot(q * axis), -1.0, 1.0)));
+    r.max_position_error_m =
+        std::max(r.max_position_error_m, (truth.p_WO - controller.wrench().p_ref()).norm());
+    r.gait_cycles = gait.cycles();
+    r.regrasps = gait.regrasps();
+    r.sim_time_s = static_cast<double>(tick - job.start_tick) * dt;
+    if (!gait.request().continuous)
+      job.progress = std::clamp(gait.turned() / gait.target(), 0.0, 0.99);
+  }
+
+  double TruePhiOf(int finger) {
+    LookAtTruth();
+    const Regrasp& r = gait.regrasp();
+    if (r.request().criterion != Criterion::kStability && !r.on_stability())
+      return judge.estimate().fingers[finger].manipulability;
+    const unsigned all = GraspFingers();
+    const unsigned fingers = r.request().without >= 0 ? all & ~(1u << r.request().without) : all;
+    return GraspStability(judge.estimate(), fingers, parameters.control);
+  }
+
+  void ReportGait() {
+    const FingerGait::Happened& happened = gait.happened();
+    if (happened.refused_finger >= 0)
+      Emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin,
+           "%s may not leave: load margin %.3f N without it", hand.fingers[happened.refused_finger].name.c_str(),
+           happened.refused_margin);
+    if (happened.aborted)
+      Emit(EventKind::kSlip, gait.regrasp().request().finger, happened.error_position,
+           "regrasp broken off: object %.1f mm, %.0f deg off", happened.error_position * 1e3,
+           happened.error_rotation * 180.0 / std::numbers::pi);
+    const int finger = gait.regrasp().request().finger;
+    if (happened.explore_began) regrasp.phi_start = TruePhiOf(finger);
+    if (happened.regrasp_ended) {
+      regrasp.finger = finger;
+      regrasp.criterion = gait.regrasp().request().criterion;
+      regrasp.on_stability = gait.regrasp().on_stability();
+      regrasp.aborted = gait.regrasp().aborted();
+      regrasp.phi_after = TruePhiOf(finger);
+      if (!gait.regrasp().request().explore) regrasp.phi_start = regrasp.phi_before;
+      Emit(EventKind::kRegrasp, finger, regrasp.phi_after, "%s regrasped: %s %.4f -> %.4f",
+           hand.fingers[finger].name.c_str(),
+           regrasp.on_stability || regrasp.criterion == Criterion::kStability ? "stability"
+                                                                              : "manipulability",
+           regrasp.phi_before, regrasp.phi_after);
+    }
+    if (happened.regrasp_began) {
+      regrasp = RegraspRecord();
+      regrasp.phi_before = TruePhiOf(finger);
+    }
+    if (!happened.changed) return;
+    if (gait.phase() == GaitPhase::kRegrasp)
+      Emit(EventKind::kGaitPhase, finger, static_cast<double>(gait.phase()), "%s: %s",
+           hand.fingers[finger].name.c_str(), Name(gait.regrasp().phase()).data());
+    else
+      Emit(EventKind::kGaitPhase, -1, static_cast<double>(gait.phase()), "%s", Name(gait.phase()).data());
+  }
+
+  void UpdateRotation() {
+    FingerGait::Margins margins;
+    margins.all = monitor.stability().load_margin;
+    for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
+    motion = gait.Update(hand, estimator.estimate(), margins, parameters.control, parameters.exploration,
+                         parameters.gait, dt, &controller, &tasks);
+    JudgeRotation();
+    ReportGait();
+    if (gait.active()) return;
+    if (gait.phase() == GaitPhase::kFailed) {
+      FinishJob(JobState::kFailed, gait.error());
+    } else {
+      FinishJob(gait.stopped() ? JobState::kCancelled : JobState::kDone, "");
+    }
+    Enter(SessionState::kHolding);
+  }
+
   void UpdateGrasp() {
     grasp.Update(estimator.estimate(), q_closed, parameters.gravity_W,
                  parameters.control, &controller, &tasks);
@@ -506,16 +615,19 @@ struct Session::Impl {
       world->SetPush(Vector3d::Zero());
       push_until = -1;
     }
+    motion = ObjectMotion();
     if (release_tick >= 0) {
       UpdateRelease();
     } else if (state == SessionState::kGrasping) {
       UpdateGrasp();
     } else if (state == SessionState::kExploring) {
       UpdateExploration();
+    } else if (state == SessionState::kRotating) {
+      UpdateRotation();
     } else if (state == SessionState::kHolding) {
       HoldAll();
     }
-    torque = controller.Update(estimator.estimate(), tasks, ObjectMotion{}, parameters.gravity_W,
+    torque = controller.Update(estimator.estimate(), tasks, motion, parameters.gravity_W,
                                parameters.control);
     AddReleasePull();
     times.control_s = clock.Lap();
@@ -538,7 +650,9 @@ struct Session::Impl {
       case FingerMode::kHold:
       case FingerMode::kTouch: return FingerRole::kHold;
       case FingerMode::kSlide:
-        return state == SessionState::kExploring ? FingerRole::kExplore : FingerRole::kMove;
+        return state == SessionState::kExploring || gait.regrasp().phase() == Regrasp::Phase::kExplore
+                   ? FingerRole::kExplore
+                   : FingerRole::kMove;
       case FingerMode::kReach: return FingerRole::kMove;
       case FingerMode::kPosture: return FingerRole::kFree;
     }
@@ -626,6 +740,28 @@ struct Session::Impl {
       x.epsilon = parameters.exploration.epsilon;
       x.gradient_W = exploration.algorithm().gradient_W();
     }
+    if (state == SessionState::kRotating && gait.regrasp().phase() == Regrasp::Phase::kExplore) {
+      ExplorationFrame& x = f.exploration;
+      x.active = true;
+      x.finger = gait.regrasp().request().finger;
+      x.criterion = gait.regrasp().request().criterion;
+      x.on_stability = gait.regrasp().on_stability();
+      x.cycle = gait.regrasp().algorithm().cycle();
+      x.phi = gait.regrasp().phi();
+      x.gradient_norm = gait.regrasp().algorithm().gradient_norm();
+      x.epsilon = parameters.exploration.epsilon;
+      x.gradient_W = gait.regrasp().algorithm().gradient_W();
+    }
+    f.gait = GaitFrame();
+    if (state == SessionState::kRotating) {
+      f.gait.active = true;
+      f.gait.phase = static_cast<int>(gait.phase());
+      f.gait.finger = gait.finger();
+      f.gait.target_angle_rad = gait.turned();
+      f.gait.achieved_angle_rad = job.rotate.angle_rad;
+      f.gait.cycles = gait.cycles();
+      f.gait.regrasps = gait.regrasps();
+    }
     f.job = job;
   }
 
@@ -640,6 +776,7 @@ struct Session::Impl {
     controller.AddTo(&hasher);
     grasp.AddTo(&hasher);
     exploration.AddTo(&hasher);
+    gait.AddTo(&hasher);
     monitor.AddTo(&hasher);
     hasher.Add(push_until);
     hasher.Add(release_tick);
@@ -661,6 +798,10 @@ struct Session::Impl {
   HybridController controller;
   GraspSequence grasp;
   FingerExploration exploration;
+  FingerGait gait;
+  ObjectMotion motion;
+  RegraspRecord regrasp;  // the last one
+  Quaterniond q_WO_start = Quaterniond::Identity();
   QualityMonitor monitor;
   FingerTasks tasks;
   JointVector q_open, q_closed, torque;
@@ -714,6 +855,7 @@ void Session::MeasureStages(bool on) {
   impl_->world->MeasureStages(on);
 }
 Session::StageTimes Session::stage_times() const { return impl_->times; }
+const RegraspRecord& Session::last_regrasp() const { return impl_->regrasp; }
 const WorldState& Session::truth() const { return impl_->world->state(); }
 const World& Session::world() const { return *impl_->world; }
 

@@ -74,6 +74,9 @@ class Session {
   void MeasureStages(bool on);
   StageTimes stage_times() const;
 
+  /// The newest regrasp of a rotation; complete once its event has come.
+  const RegraspRecord& last_regrasp() const;
+
   /// For tests and judges: the truth.
   const WorldState& truth() const;
   const World& world() const;

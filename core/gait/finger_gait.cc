@@ -1,0 +1,277 @@
+#include "core/gait/finger_gait.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace regrasp {
+namespace {
+
+constexpr double kMarginFilter_s = 0.05;
+constexpr double kRecoverLimit_s = 2.0;
+constexpr double kRecovered = 0.5;   // of the limits at which a regrasp is broken off
+constexpr double kFinish_s = 0.4;
+constexpr double kProgress = 0.02;   // rad: a cycle that turns the object less has not turned it
+constexpr int kIdleCycles = 2;       // cycles without progress before the gait gives up
+
+}  // namespace
+
+std::string_view Name(GaitPhase phase) {
+  switch (phase) {
+    case GaitPhase::kIdle: return "idle";
+    case GaitPhase::kObjectMotion: return "object motion";
+    case GaitPhase::kSettle: return "settle";
+    case GaitPhase::kRegrasp: return "regrasp";
+    case GaitPhase::kRecover: return "recover";
+    case GaitPhase::kFinish: return "finish";
+    case GaitPhase::kDone: return "done";
+    case GaitPhase::kFailed: return "failed";
+  }
+  return "";
+}
+
+void FingerGait::Start(const Request& request, const HandModel& hand, const Estimate& estimate,
+                       const ObjectWrench& wrench, unsigned fingers) {
+  *this = FingerGait();
+  request_ = request;
+  sign_ = request.angle_rad < 0 ? -1.0 : 1.0;
+  fingers_ = fingers;
+  order_ = MakeGaitOrder(hand, estimate, fingers);
+  for (int i = 0; i < hand.num_fingers(); ++i) {
+    const FingerEstimate& f = estimate.fingers[i];
+    home_.p_OC[i] = f.p_WC - wrench.p_ref();
+    home_.manipulability[i] = f.manipulability;
+    p_OF_home_[i] = f.p_WF - wrench.p_ref();
+    normal_home_[i] = f.normal_W;
+  }
+  Enter(GaitPhase::kSettle);
+}
+
+void FingerGait::Stop() {
+  if (!active()) return;
+  stop_ = true;
+  if (phase_ == GaitPhase::kObjectMotion) manipulation_.Stop();
+  if (phase_ == GaitPhase::kRegrasp) regrasp_.Abort();
+}
+
+void FingerGait::Enter(GaitPhase phase) {
+  phase_ = phase;
+  ticks_ = 0;
+  happened_.changed = true;
+}
+
+void FingerGait::StartMotion(const GaitParameters& parameters) {
+  const double left = std::abs(request_.angle_rad) - turned_before_;
+  const double step = request_.continuous ? parameters.step_rad : std::min(parameters.step_rad, left);
+  const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
+  manipulation_.Start(sign_ * request_.axis_W, step, speed);
+  Enter(GaitPhase::kObjectMotion);
+}
+
+void FingerGait::EndMotion() {
+  turned_before_ += manipulation_.turned();
+  turned_in_cycle_ = manipulation_.turned();
+  waiting_ = fingers_;
+  regrasps_in_cycle_ = 0;
+  refused_finger_ = -1;
+}
+
+Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
+                                     const GaitParameters& parameters) const {
+  const Quaterniond ahead =
+      FromRotationVector(-sign_ * parameters.lead * parameters.step_rad * request_.axis_W);
+  return {wrench.p_ref() + ahead * home_.p_OC[finger], wrench.p_ref() + ahead * p_OF_home_[finger],
+          ahead * normal_home_[finger]};
+}
+
+bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
+                           double rotation) {
+  happened_.error_position = (wrench.p_ref() - estimate.p_WO).norm();
+  happened_.error_rotation =
+      RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
+  return happened_.error_position > position || happened_.error_rotation > rotation;
+}
+
+void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
+                      const ObjectWrench& wrench, const GaitParameters& parameters) {
+  const bool exploring = parameters.mode == static_cast<double>(GaitMode::kExploring);
+  while (waiting_ != 0) {
+    // The first of the table that waits, or the one farthest from its target.
+    int pick = -1;
+    double farthest = -1;
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      const int i = order_[k].finger;
+      if (!(waiting_ >> i & 1u)) continue;
+      const double distance =
+          (TargetOf(i, wrench, parameters).p_WC - estimate.fingers[i].p_WC).norm();
+      if (pick >= 0 && (parameters.by_need == 0 || distance <= farthest)) continue;
+      pick = static_cast<int>(k);
+      farthest = distance;
+    }
+    if (pick < 0) break;
+    const GaitStep& step = order_[pick];
+    waiting_ &= ~(1u << step.finger);
+    if (!exploring && farthest < parameters.skip_distance) continue;
+    if (margins.without[step.finger] < parameters.margin_min) {
+      refused_finger_ = happened_.refused_finger = step.finger;
+      refused_margin_ = happened_.refused_margin = margins.without[step.finger];
+      continue;
+    }
+    Regrasp::Request request;
+    request.finger = step.finger;
+    request.hop = parameters.hop > 0;
+    request.explore = exploring;
+    request.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
+    request.gradient_W = gradient_[step.finger];
+    request.criterion = Criterion::kSwitched;
+    if (step.objective == GaitObjective::kStabilityWithoutNext &&
+        pick + 1 < static_cast<int>(order_.size())) {
+      request.criterion = Criterion::kStability;
+      request.without = order_[pick + 1].finger;
+    }
+    regrasp_.Start(request);
+    happened_.regrasp_began = true;
+    Enter(GaitPhase::kRegrasp);
+    return;
+  }
+  EndCycle(hand, parameters);
+}
+
+void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameters) {
+  if (turned_before_ > 0) ++cycles_;
+  const bool idle = turned_in_cycle_ < kProgress && regrasps_in_cycle_ == 0;
+  idle_cycles_ = idle ? idle_cycles_ + 1 : 0;
+  if (idle_cycles_ <= kIdleCycles) {
+    StartMotion(parameters);
+    return;
+  }
+  if (refused_finger_ >= 0) {
+    std::snprintf(error_, sizeof(error_),
+                  "%s may not leave: the load margin without it is %.3f N, below %.3f N",
+                  hand.fingers[refused_finger_].name.c_str(), refused_margin_, parameters.margin_min);
+  } else {
+    const int finger = manipulation_.end_finger();
+    std::snprintf(error_, sizeof(error_), "the object cannot turn further: %s%s%s",
+                  Name(manipulation_.end()).data(), finger >= 0 ? " of " : "",
+                  finger >= 0 ? hand.fingers[finger].name.c_str() : "");
+  }
+  Enter(GaitPhase::kFailed);
+}
+
+ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
+                                const Margins& margins, const ControlParameters& control,
+                                const ExplorationParameters& exploration,
+                                const GaitParameters& parameters, double dt,
+                                HybridController* controller, FingerTasks* tasks) {
+  happened_ = Happened();
+  ObjectMotion motion;
+  if (!active()) return motion;
+  ++ticks_;
+  const double gain = have_margins_ ? dt / (kMarginFilter_s + dt) : 1.0;
+  have_margins_ = true;
+  smooth_.all += gain * (margins.all - smooth_.all);
+  for (std::size_t i = 0; i < margins.without.size(); ++i)
+    smooth_.without[i] += gain * (margins.without[i] - smooth_.without[i]);
+
+  for (int i = 0; i < hand.num_fingers(); ++i) {
+    if (!(fingers_ >> i & 1u) || i == finger()) continue;
+    FingerTask& task = (*tasks)[i];
+    task.mode = FingerMode::kHold;
+    task.cap = control.max_normal_force;
+    task.grip = control.grip_force;
+  }
+  const ObjectWrench& wrench = controller->wrench();
+
+  switch (phase_) {
+    case GaitPhase::kObjectMotion:
+      motion = manipulation_.Update(hand, estimate, wrench, home_, fingers_, smooth_.all, parameters, dt);
+      if (manipulation_.end() != LocalManipulation::End::kNone) {
+        EndMotion();
+        const bool there =
+            !request_.continuous && turned_before_ > std::abs(request_.angle_rad) - 1e-3;
+        Enter(stop_ || there ? GaitPhase::kFinish : GaitPhase::kSettle);
+      }
+      break;
+
+    case GaitPhase::kSettle:
+      if (stop_) {
+        Enter(GaitPhase::kFinish);
+      } else if (ticks_ * dt >= parameters.settle_s) {
+        Next(hand, estimate, smooth_, wrench, parameters);
+      }
+      break;
+
+    case GaitPhase::kRegrasp: {
+      if (!regrasp_.aborted() && Disturbed(estimate, wrench, parameters.abort_position,
+                                           parameters.abort_rotation)) {
+        regrasp_.Abort();
+        happened_.aborted = true;
+      }
+      const Regrasp::Phase before = regrasp_.phase();
+      const int finger = regrasp_.request().finger;
+      regrasp_.Update(hand, estimate, TargetOf(finger, wrench, parameters), fingers_, control,
+                      exploration, parameters, dt, controller, tasks);
+      happened_.changed |= regrasp_.phase() != before;
+      happened_.explore_began = regrasp_.explore_began();
+      happened_.explore_ended = regrasp_.explore_ended();
+      if (happened_.explore_ended) gradient_[finger] = regrasp_.algorithm().gradient_W();
+      if (regrasp_.active()) break;
+      happened_.regrasp_ended = true;
+      if (regrasp_.lost()) {
+        std::snprintf(error_, sizeof(error_), "%s found no surface to stand on",
+                      hand.fingers[finger].name.c_str());
+        Enter(GaitPhase::kFailed);
+      } else if (stop_) {
+        Enter(GaitPhase::kFinish);
+      } else if (regrasp_.aborted()) {
+        Enter(GaitPhase::kRecover);
+      } else {
+        ++regrasps_;
+        ++regrasps_in_cycle_;
+        Next(hand, estimate, smooth_, wrench, parameters);
+      }
+      break;
+    }
+
+    case GaitPhase::kRecover:
+      if (stop_) {
+        Enter(GaitPhase::kFinish);
+      } else if (!Disturbed(estimate, wrench, kRecovered * parameters.abort_position,
+                            kRecovered * parameters.abort_rotation) ||
+                 ticks_ * dt > kRecoverLimit_s) {
+        Next(hand, estimate, smooth_, wrench, parameters);
+      }
+      break;
+
+    case GaitPhase::kFinish:
+      if (stop_ || ticks_ * dt >= kFinish_s) Enter(GaitPhase::kDone);
+      break;
+
+    case GaitPhase::kIdle:
+    case GaitPhase::kDone:
+    case GaitPhase::kFailed:
+      break;
+  }
+  return motion;
+}
+
+void FingerGait::AddTo(StateHasher* hasher) const {
+  hasher->Add(phase_);
+  hasher->Add(ticks_);
+  if (!active()) return;
+  hasher->Add(stop_);
+  hasher->Add(request_.angle_rad);
+  hasher->Add(request_.axis_W);
+  hasher->Add(fingers_);
+  hasher->Add(waiting_);
+  hasher->Add(turned_before_);
+  hasher->Add(turned_in_cycle_);
+  hasher->Add(cycles_);
+  hasher->Add(regrasps_);
+  hasher->Add(idle_cycles_);
+  for (double margin : smooth_.without) hasher->Add(margin);
+  for (const Vector3d& p : p_OF_home_) hasher->Add(p);
+  manipulation_.AddTo(hasher);
+  regrasp_.AddTo(hasher);
+}
+
+}  // namespace regrasp

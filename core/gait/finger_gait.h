@@ -1,0 +1,119 @@
+#pragma once
+
+/// The finger gait (Sec. III b): object motion with all fingers, then one finger after the other regrasps
+/// (gait_table.h), again and again, until the object has turned as far as wanted.
+
+#include "core/gait/gait_table.h"
+#include "core/gait/local_manipulation.h"
+#include "core/gait/regrasp.h"
+
+namespace regrasp {
+
+/// States of the gait; GaitFrame::phase.
+enum class GaitPhase : std::uint8_t {
+  kIdle,
+  kObjectMotion,  ///< all fingers hold, the object turns
+  kSettle,        ///< all fingers hold
+  kRegrasp,       ///< S_L, S_R, ...: one finger moves, the others hold
+  kRecover,       ///< a regrasp was broken off: all fingers hold until the object is back
+  kFinish,        ///< the object comes to rest
+  kDone,
+  kFailed,
+};
+std::string_view Name(GaitPhase phase);  ///< "object motion", ...
+
+class FingerGait {
+ public:
+  struct Request {
+    double angle_rad = 0;  ///< signed
+    bool continuous = false;
+    Vector3d axis_W = Vector3d::UnitZ();
+    double speed_rad_s = 0;  ///< 0: the parameter's
+    std::uint64_t seed = 0;
+  };
+  /// Load margins from sensed contacts [N].
+  struct Margins {
+    double all = 0;
+    std::array<double, kMaxFingers> without{};
+  };
+  /// What happened in the last Update.
+  struct Happened {
+    bool changed = false;          ///< phase, finger or phase of the regrasp
+    int refused_finger = -1;       ///< may not leave: the margin without it is too small
+    double refused_margin = 0;     ///< [N]
+    bool aborted = false;          ///< a regrasp was broken off
+    double error_position = 0, error_rotation = 0;  ///< object against reference, then [m, rad]
+    bool regrasp_began = false, explore_began = false, explore_ended = false, regrasp_ended = false;
+  };
+
+  /// `fingers`: bits of the fingers of the grasp. Their present contacts are the gait's first ones.
+  void Start(const Request& request, const HandModel& hand, const Estimate& estimate,
+             const ObjectWrench& wrench, unsigned fingers);
+  /// All fingers into a hold, at once; then kDone.
+  void Stop();
+  /// One tick: sets every task, returns the object's motion. dt [s].
+  ObjectMotion Update(const HandModel& hand, const Estimate& estimate, const Margins& margins,
+                      const ControlParameters& control, const ExplorationParameters& exploration,
+                      const GaitParameters& parameters, double dt, HybridController* controller,
+                      FingerTasks* tasks);
+
+  GaitPhase phase() const { return phase_; }
+  bool active() const {
+    return phase_ != GaitPhase::kIdle && phase_ != GaitPhase::kDone && phase_ != GaitPhase::kFailed;
+  }
+  bool stopped() const { return stop_; }
+  /// The finger that regrasps, or -1.
+  int finger() const { return phase_ == GaitPhase::kRegrasp ? regrasp_.request().finger : -1; }
+  const Regrasp& regrasp() const { return regrasp_; }
+  const LocalManipulation& manipulation() const { return manipulation_; }
+  const Happened& happened() const { return happened_; }
+  /// Of the object reference about the axis, signed [rad].
+  double turned() const { return sign_ * (turned_before_ + manipulation_turned()); }
+  double target() const { return request_.angle_rad; }
+  const Request& request() const { return request_; }
+  int cycles() const { return cycles_; }
+  int regrasps() const { return regrasps_; }
+  /// Why it failed: one plain sentence, empty unless kFailed.
+  const char* error() const { return error_; }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  void Enter(GaitPhase phase);
+  double manipulation_turned() const {
+    return phase_ == GaitPhase::kObjectMotion ? manipulation_.turned() : 0.0;
+  }
+  void StartMotion(const GaitParameters& parameters);
+  void EndMotion();
+  /// Picks the next finger that shall and may leave, or starts the next object motion.
+  void Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
+            const ObjectWrench& wrench, const GaitParameters& parameters);
+  void EndCycle(const HandModel& hand, const GaitParameters& parameters);
+  Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench, const GaitParameters& parameters) const;
+  bool Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
+                 double rotation);
+
+  Request request_;
+  GaitPhase phase_ = GaitPhase::kIdle;
+  int ticks_ = 0;
+  bool stop_ = false;
+  double sign_ = 1;
+  unsigned fingers_ = 0;
+  GaitOrder order_;
+  LocalManipulation::Home home_;
+  std::array<Vector3d, kMaxFingers> p_OF_home_{}, normal_home_{};  // tip centre from the reference [m]
+  std::array<Vector3d, kMaxFingers> gradient_{};                   // last of each finger
+  LocalManipulation manipulation_;
+  Regrasp regrasp_;
+  Margins smooth_;        // margins, low-passed
+  bool have_margins_ = false;
+  unsigned waiting_ = 0;  // bits of the fingers that have not had their turn in this cycle
+  double turned_before_ = 0, turned_in_cycle_ = 0;
+  int regrasps_in_cycle_ = 0, idle_cycles_ = 0;
+  int refused_finger_ = -1;  // in this cycle
+  double refused_margin_ = 0;
+  int cycles_ = 0, regrasps_ = 0;
+  Happened happened_;
+  char error_[160] = {};
+};
+
+}  // namespace regrasp

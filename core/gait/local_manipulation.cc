@@ -1,0 +1,95 @@
+#include "core/gait/local_manipulation.h"
+
+#include <algorithm>
+
+namespace regrasp {
+
+std::string_view Name(LocalManipulation::End end) {
+  using End = LocalManipulation::End;
+  switch (end) {
+    case End::kNone: return "moving";
+    case End::kReached: return "reached";
+    case End::kJointLimit: return "joint limit";
+    case End::kManipulability: return "manipulability";
+    case End::kExcursion: return "excursion";
+    case End::kMargin: return "load margin";
+    case End::kStopped: return "stopped";
+  }
+  return "";
+}
+
+void LocalManipulation::Start(const Vector3d& axis_W, double angle, double speed_rad_s) {
+  *this = LocalManipulation();
+  axis_W_ = axis_W;
+  angle_ = angle;
+  speed_max_ = speed_rad_s;
+}
+
+LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const Estimate& estimate,
+                                                  const Vector3d& p_ref, const Home& home,
+                                                  unsigned fingers, double margin,
+                                                  const GaitParameters& parameters) {
+  for (int i = 0; i < hand.num_fingers(); ++i) {
+    if (!(fingers >> i & 1u)) continue;
+    const FingerEstimate& f = estimate.fingers[i];
+    end_finger_ = i;
+    const Vector3d v = axis_W_.cross(f.p_WC - estimate.p_WO);  // per rad
+    const Matrix3d inverse = (f.J * f.J.transpose() + 1e-6 * Matrix3d::Identity()).inverse();
+    const Vector3d along = inverse * v;
+    const auto& joints = hand.fingers[i].joints;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const double q = estimate.q[joints[k]];
+      const double rate = f.J.col(static_cast<Eigen::Index>(k)).dot(along);
+      const Joint& joint = hand.joints[joints[k]];
+      // A joint that hardly moves may stand at its limit.
+      constexpr double kMoves = 0.3;  // rad per rad of the object
+      if ((q > joint.upper - parameters.limit_margin && rate > kMoves) ||
+          (q < joint.lower + parameters.limit_margin && rate < -kMoves))
+        return End::kJointLimit;
+    }
+    if (f.manipulability < parameters.min_manipulability * home.manipulability[i])
+      return End::kManipulability;
+    const Vector3d excursion = f.p_WC - p_ref - home.p_OC[i];
+    if (excursion.norm() > parameters.max_excursion && excursion.dot(v) > 0) return End::kExcursion;
+  }
+  end_finger_ = -1;
+  return margin < parameters.margin_min ? End::kMargin : End::kNone;
+}
+
+ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& estimate,
+                                       const ObjectWrench& wrench, const Home& home, unsigned fingers,
+                                       double margin, const GaitParameters& parameters, double dt) {
+  ObjectMotion motion;
+  if (end_ != End::kNone) return motion;
+  const double left = angle_ - turned_;
+  const double e_p = (wrench.p_ref() - estimate.p_WO).norm();
+  const double e_r = RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
+  const bool wait = e_p > parameters.lag_position || e_r > parameters.lag_rotation;
+  double wanted = stop_ || wait ? 0.0 : speed_max_;
+  wanted = std::min(wanted, std::sqrt(2.0 * parameters.acceleration * std::max(0.0, left)));
+  const double change = parameters.acceleration * dt;
+  speed_ = std::clamp(wanted, speed_ - change, speed_ + change);
+  speed_ = std::min(std::max(speed_, 0.0), left / dt);
+  turned_ += speed_ * dt;
+  motion.w_W = speed_ * axis_W_;
+  constexpr double kThere = 1e-4;  // rad
+  if (angle_ - turned_ < kThere) {
+    end_ = End::kReached;
+  } else if (stop_ && speed_ <= 0) {
+    end_ = End::kStopped;
+  } else {
+    end_ = FindEnd(hand, estimate, wrench.p_ref(), home, fingers, margin, parameters);
+  }
+  return motion;
+}
+
+void LocalManipulation::AddTo(StateHasher* hasher) const {
+  hasher->Add(axis_W_);
+  hasher->Add(angle_);
+  hasher->Add(turned_);
+  hasher->Add(speed_);
+  hasher->Add(stop_);
+  hasher->Add(end_);
+}
+
+}  // namespace regrasp

@@ -1,0 +1,62 @@
+#pragma once
+
+/// The local manipulation controller: all fingers hold, and the object moves a little with them. It moves
+/// the reference of the object-level force control (core/control) and knows when it has reached its end.
+
+#include <array>
+#include <string_view>
+
+#include "core/control/hybrid_controller.h"
+#include "core/gait/gait_parameters.h"
+
+namespace regrasp {
+
+class LocalManipulation {
+ public:
+  enum class End : std::uint8_t {
+    kNone,            ///< still moving
+    kReached,         ///< where it should
+    kJointLimit,      ///< a joint is at its limit and would have to go on
+    kManipulability,  ///< a finger is near a singular posture
+    kExcursion,       ///< a contact is too far from its first place
+    kMargin,          ///< the grasp could hardly carry more
+    kStopped,
+  };
+
+  /// What the fingers looked like at first; the ends are judged against it.
+  struct Home {
+    std::array<Vector3d, kMaxFingers> p_OC{};          ///< contact from the object reference, in W axes [m]
+    std::array<double, kMaxFingers> manipulability{};  ///< [kManipulabilityUnit]
+  };
+
+  /// A turn by `angle` [rad, >= 0] about the unit vector `axis_W` through the object's centre.
+  void Start(const Vector3d& axis_W, double angle, double speed_rad_s);
+  /// Slows down and ends with kStopped.
+  void Stop() { stop_ = true; }
+  /// One tick: the motion of the object reference. `fingers`: bits of the holding fingers; `margin`: load
+  /// margin of their grasp [N]; dt [s].
+  ObjectMotion Update(const HandModel& hand, const Estimate& estimate, const ObjectWrench& wrench,
+                      const Home& home, unsigned fingers, double margin, const GaitParameters& parameters,
+                      double dt);
+
+  End end() const { return end_; }
+  int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
+  double turned() const { return turned_; }       ///< of the reference since Start [rad]
+  double speed() const { return speed_; }         ///< [rad/s]
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  End FindEnd(const HandModel& hand, const Estimate& estimate, const Vector3d& p_ref, const Home& home,
+              unsigned fingers, double margin, const GaitParameters& parameters);
+
+  Vector3d axis_W_ = Vector3d::UnitZ();
+  double angle_ = 0, speed_max_ = 0;
+  double turned_ = 0, speed_ = 0;
+  bool stop_ = false;
+  End end_ = End::kNone;
+  int end_finger_ = -1;
+};
+
+std::string_view Name(LocalManipulation::End end);  ///< "reached", "joint limit", ...
+
+}  // namespace regrasp

@@ -1,0 +1,223 @@
+#include "core/gait/regrasp.h"
+
+#include <algorithm>
+
+#include "core/exploration/walls.h"
+
+namespace regrasp {
+namespace {
+
+constexpr int kTouchTicks = 3;          // consecutive ticks of contact that count as landed
+constexpr double kNear = 0.0015;        // this near to above the target the finger comes down [m]
+constexpr double kLate_s = 0.15;        // it comes down anyway so long after its target got there
+constexpr double kTooDeep = 0.010;      // so far below where it left: no surface here [m]
+constexpr double kLost_s = 1.0;         // a finger that reloads without contact for so long is lost
+constexpr double kSlideArrived = 0.0005;  // [m]
+constexpr double kSlideLimit_s = 2.5;
+constexpr double kSettle_s = 0.08;
+constexpr double kDiscReturn = 1.0;     // share of the excess over the disc that counts as a wall's depth
+
+}  // namespace
+
+std::string_view Name(Regrasp::Phase phase) {
+  using Phase = Regrasp::Phase;
+  switch (phase) {
+    case Phase::kIdle: return "idle";
+    case Phase::kUnload: return "unload";
+    case Phase::kLift: return "lift";
+    case Phase::kAcross: return "across";
+    case Phase::kDown: return "down";
+    case Phase::kSlide: return "slide";
+    case Phase::kSettle: return "settle";
+    case Phase::kExplore: return "explore";
+    case Phase::kReload: return "reload";
+    case Phase::kDone: return "done";
+  }
+  return "";
+}
+
+void Regrasp::Start(const Request& request) {
+  *this = Regrasp();
+  request_ = request;
+  phase_ = Phase::kUnload;
+}
+
+void Regrasp::Abort() {
+  if (active()) abort_ = aborted_ = true;
+}
+
+void Regrasp::Enter(Phase phase) {
+  phase_ = phase;
+  ticks_ = 0;
+  path_ = 0;
+}
+
+void Regrasp::Reach(const Vector3d& velocity, double dt, FingerTask* task) {
+  p_target_W_ += velocity * dt;
+  path_ += velocity.norm() * dt;
+  task->mode = FingerMode::kReach;
+  task->p_target_W = p_target_W_;
+  task->v_target_W = velocity;
+}
+
+void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Target& target,
+                      unsigned grasp, const ControlParameters& control,
+                      const ExplorationParameters& exploration, const GaitParameters& parameters,
+                      double dt, FingerTask* task) {
+  const FingerEstimate& finger = estimate.fingers[request_.finger];
+  const unsigned fingers = request_.without >= 0 ? grasp & ~(1u << request_.without) : grasp;
+  const ObjectiveValue objective =
+      Objective(request_.criterion, request_.finger, fingers, estimate, control,
+                exploration.stability_weight, on_stability_);
+  phi_ = objective.phi;
+  on_stability_ = objective.on_stability;
+  task->mode = FingerMode::kSlide;
+  task->force = exploration.normal_force;
+  task->v_W.setZero();
+
+  SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
+  FindWalls(hand, estimate, request_.finger, exploration, &input.walls);
+  const Vector3d out = TangentPart(finger.p_WC - target.p_WC, finger.normal_W);
+  const double excess = out.norm() - parameters.disc_radius;
+  if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess});
+
+  if (phase_ == Phase::kSettle) {
+    if (ticks_ * dt < kSettle_s) return;
+    algorithm_.Start(input, Estimator::kLeastSquares, request_.seed, 0, exploration);
+    explore_began_ = true;
+    Enter(Phase::kExplore);
+    return;
+  }
+  const bool lost = finger.ticks_without_contact * dt > 0.1;
+  const bool over = ticks_ * dt > parameters.explore_s;
+  if (abort_ || lost || over ||
+      algorithm_.Update(input, exploration, dt) != SurfaceExploration::Status::kRunning) {
+    explore_ended_ = true;
+    Enter(Phase::kReload);
+    return;
+  }
+  task->v_W = algorithm_.velocity_W();
+}
+
+void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Target& target,
+                     unsigned grasp, const ControlParameters& control,
+                     const ExplorationParameters& exploration, const GaitParameters& parameters,
+                     double dt, HybridController* controller, FingerTasks* tasks) {
+  explore_began_ = explore_ended_ = false;
+  if (!active()) return;
+  const FingerEstimate& finger = estimate.fingers[request_.finger];
+  FingerTask& task = (*tasks)[request_.finger];
+  ++ticks_;
+  const double ramp = std::min(1.0, ticks_ * dt / std::max(dt, parameters.transfer_s));
+
+  switch (phase_) {
+    case Phase::kIdle:
+    case Phase::kDone:
+      break;
+
+    case Phase::kUnload: {
+      // Down from the force it has: above that nothing would be relieved.
+      if (ticks_ == 1) cap_start_ = std::min(control.max_normal_force, finger.force);
+      const double low = request_.hop ? parameters.hop_force : parameters.slide_force;
+      task.mode = FingerMode::kHold;
+      task.cap = cap_start_ + ramp * (std::min(low, cap_start_) - cap_start_);
+      task.grip = std::min(control.grip_force, task.cap);
+      if (abort_) {
+        Enter(Phase::kReload);
+      } else if (ramp >= 1.0) {
+        p_target_W_ = finger.p_WF;
+        normal_W_ = finger.normal_W;
+        Enter(request_.hop ? Phase::kLift : Phase::kSlide);
+      }
+      break;
+    }
+
+    case Phase::kLift:
+      Reach(parameters.lift_speed * normal_W_, dt, &task);
+      if (abort_) {
+        Enter(Phase::kDown);
+      } else if (path_ >= parameters.lift_height) {
+        Enter(Phase::kAcross);
+      }
+      break;
+
+    case Phase::kAcross: {
+      const Vector3d above = target.p_WF + parameters.lift_height * target.normal_W;
+      const Vector3d way = above - p_target_W_;
+      const double distance = way.norm();
+      const double speed = std::min(parameters.across_speed, distance / dt);
+      Reach(distance > 1e-9 ? Vector3d(way * (speed / distance)) : Vector3d(Vector3d::Zero()), dt,
+            &task);
+      if (distance > 1e-6) ticks_ = 0;  // counts from when the target has arrived
+      const bool near = (above - finger.p_WF).norm() < kNear;
+      if (abort_ || (distance <= 1e-6 && (near || ticks_ * dt > kLate_s))) {
+        normal_W_ = target.normal_W;
+        Enter(Phase::kDown);
+      }
+      break;
+    }
+
+    case Phase::kDown:
+      Reach(-parameters.down_speed * normal_W_, dt, &task);
+      if ((finger.in_contact && finger.ticks_in_contact >= kTouchTicks) ||
+          path_ > parameters.lift_height + kTooDeep)
+        Enter(request_.explore && !abort_ ? Phase::kSettle : Phase::kReload);
+      break;
+
+    case Phase::kSlide: {
+      task.mode = FingerMode::kSlide;
+      task.force = parameters.slide_force;
+      const Vector3d error = TangentPart(target.p_WC - finger.p_WC, finger.normal_W);
+      const double distance = error.norm();
+      task.v_W = distance > 1e-9 ? Vector3d(error * std::min(parameters.slide_gain,
+                                                             parameters.slide_speed / distance))
+                                 : Vector3d(Vector3d::Zero());
+      if (abort_) {
+        Enter(Phase::kReload);
+      } else if (distance < kSlideArrived || ticks_ * dt > kSlideLimit_s) {
+        Enter(request_.explore ? Phase::kSettle : Phase::kReload);
+      }
+      break;
+    }
+
+    case Phase::kSettle:
+    case Phase::kExplore:
+      Explore(hand, estimate, target, grasp, control, exploration, parameters, dt, &task);
+      break;
+
+    case Phase::kReload: {
+      const bool touching = finger.in_contact;
+      if (ticks_ == 1) {
+        cap_start_ = std::max(control.min_normal_force, finger.force);
+        if (request_.explore) controller->RestHere(estimate, request_.finger);
+      }
+      task.mode = FingerMode::kHold;
+      task.cap = std::max(cap_start_, cap_start_ + ramp * (control.grip_force - cap_start_));
+      task.grip = std::min(control.grip_force, task.cap);
+      if (ramp < 1.0) break;
+      lost_ = !touching && ticks_ * dt > kLost_s;
+      if (!touching && !lost_) break;
+      task.cap = control.max_normal_force;
+      task.grip = control.grip_force;
+      Enter(Phase::kDone);
+      break;
+    }
+  }
+}
+
+void Regrasp::AddTo(StateHasher* hasher) const {
+  hasher->Add(phase_);
+  hasher->Add(ticks_);
+  if (!active()) return;
+  hasher->Add(request_.finger);
+  hasher->Add(abort_);
+  hasher->Add(cap_start_);
+  hasher->Add(p_target_W_);
+  hasher->Add(normal_W_);
+  hasher->Add(path_);
+  hasher->Add(phi_);
+  hasher->Add(on_stability_);
+  algorithm_.AddTo(hasher);
+}
+
+}  // namespace regrasp
