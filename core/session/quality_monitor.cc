@@ -1,47 +1,79 @@
 #include "core/session/quality_monitor.h"
 
-#include "core/exploration/objective.h"
 #include "core/quality/load_margin.h"
 #include "core/quality/stability.h"
 
 namespace regrasp {
 
-QualityMonitor::QualityMonitor() = default;
-
 void QualityMonitor::Update(const Estimate& estimate, unsigned fingers, const Vector3d& gravity_W,
                             const ControlParameters& parameters) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
-  const std::span<const GraspContact> contacts(grasp.data(), grasp.size());
   const double scale = estimate.object_scale;
-  const SingularMeasures m = ComputeSingularMeasures(contacts, scale);
+  const SingularMeasures m = ComputeSingularMeasures({grasp.data(), grasp.size()}, scale);
   stability_.min_singular_value = m.min_singular_value;
   stability_.sqrt_det = m.sqrt_det;
   stability_.isotropy = m.isotropy;
   stability_.threshold = parameters.stability_threshold;
-  switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.stability_measure))) {
-    case StabilityMeasure::kMinSingularValue: stability_.active = m.min_singular_value; break;
-    case StabilityMeasure::kEpsilon: stability_.active = stability_.epsilon; break;
-    case StabilityMeasure::kSqrtDet: stability_.active = m.sqrt_det; break;
-    case StabilityMeasure::kIsotropy: stability_.active = m.isotropy; break;
+
+  if (++tick_ >= kMarginInterval) {
+    tick_ = 0;
+    UpdateMargin(estimate, fingers, gravity_W, parameters);
+  } else {
+    UpdateEpsilon(grasp, scale);
   }
 
-  const Vector3d weight = parameters.mass_estimate * gravity_W;
-  const int num_fingers = static_cast<int>(estimate.fingers.size());
-  if (turn_ >= num_fingers) {
-    stability_.load_margin = LoadMargin(contacts, weight, scale, parameters.max_normal_force);
-    turn_ = 0;
-  } else {
-    const Grasp rest = GraspOf(estimate, fingers & ~(1u << turn_), parameters.friction_estimate);
-    load_margin_without_[turn_] =
-        LoadMargin({rest.data(), rest.size()}, weight, scale, parameters.max_normal_force);
-    ++turn_;
+  switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.stability_measure))) {
+    case StabilityMeasure::kMinSingularValue:
+      stability_.active = m.min_singular_value;
+      break;
+    case StabilityMeasure::kEpsilon:
+      stability_.active = stability_.epsilon;
+      break;
+    case StabilityMeasure::kSqrtDet:
+      stability_.active = m.sqrt_det;
+      break;
+    case StabilityMeasure::kIsotropy:
+      stability_.active = m.isotropy;
+      break;
   }
 }
 
+void QualityMonitor::UpdateMargin(const Estimate& estimate, unsigned fingers,
+                                  const Vector3d& gravity_W, const ControlParameters& parameters) {
+  const Vector3d weight = parameters.mass_estimate * gravity_W;
+  const int num_fingers = static_cast<int>(estimate.fingers.size());
+  const bool whole = turn_ >= num_fingers;
+  const unsigned rest = whole ? fingers : fingers & ~(1u << turn_);
+  const Grasp grasp = GraspOf(estimate, rest, parameters.friction_estimate);
+  const double rho = LoadMargin({grasp.data(), grasp.size()}, weight, estimate.object_scale,
+                                parameters.max_normal_force);
+  (whole ? stability_.load_margin : load_margin_without_[turn_]) = rho;
+  turn_ = whole ? 0 : turn_ + 1;
+}
+
+void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale) {
+  ++epsilon_ticks_;
+  if (!epsilon_begun_) {
+    if (epsilon_ticks_ < kEpsilonInterval) return;
+    epsilon_.Begin({grasp.data(), grasp.size()}, torque_scale, kEpsilonEdges);
+    epsilon_begun_ = true;
+    epsilon_ticks_ = 0;
+    return;
+  }
+  if (!epsilon_.Step(kEpsilonFacets)) return;
+  stability_.epsilon = epsilon_.result();
+  epsilon_begun_ = false;
+}
+
 void QualityMonitor::AddTo(StateHasher* hasher) const {
+  hasher->Add(tick_);
   hasher->Add(turn_);
   hasher->Add(stability_.load_margin);
   for (double rho : load_margin_without_) hasher->Add(rho);
+  hasher->Add(stability_.epsilon);
+  hasher->Add(epsilon_begun_);
+  hasher->Add(epsilon_ticks_);
+  if (epsilon_begun_) epsilon_.AddTo(*hasher);
 }
 
 }  // namespace regrasp

@@ -1,28 +1,47 @@
 #pragma once
 
-/// Keeps every quality measure of the present grasp fresh without ever standing in the way of a tick:
-/// the cheap ones each tick, one load margin per tick in turn, epsilon a few facets at a time.
+/// Keeps every quality measure of the present grasp fresh without ever standing in the way of a
+/// tick: the singular values each tick, one load margin every kMarginInterval ticks in turn,
+/// epsilon a few facets at a time in the ticks between. What is done in which tick depends on
+/// nothing but the number of ticks and the grasp.
+
+#include <array>
 
 #include "core/control/estimate.h"
+#include "core/quality/epsilon.h"
 #include "core/session/frame.h"
 
 namespace regrasp {
 
 class QualityMonitor {
  public:
-  QualityMonitor();
+  static constexpr int kMarginInterval = 5;    ///< ticks from one load margin to the next
+  static constexpr int kEpsilonFacets = 60;    ///< facets per tick (about 0.1 us each)
+  static constexpr int kEpsilonEdges = 8;      ///< of the friction pyramid
+  static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
+
   /// `fingers`: bits of the fingers that form the grasp. gravity_W [m/s²].
   void Update(const Estimate& estimate, unsigned fingers, const Vector3d& gravity_W,
               const ControlParameters& parameters);
+  /// `volume` stays 0: it is too slow for a tick (see WrenchHullVolume()). `epsilon` is of the
+  /// grasp some 0.1 s ago.
   const StabilityFrame& stability() const { return stability_; }
   /// rho of the grasp without this finger [N].
   double load_margin_without(int finger) const { return load_margin_without_[finger]; }
   void AddTo(StateHasher* hasher) const;
 
  private:
+  void UpdateMargin(const Estimate& estimate, unsigned fingers, const Vector3d& gravity_W,
+                    const ControlParameters& parameters);
+  void UpdateEpsilon(const Grasp& grasp, double torque_scale);
+
   StabilityFrame stability_;
   std::array<double, kMaxFingers> load_margin_without_{};
-  int turn_ = 0;
+  int tick_ = 0;  // counts up to kMarginInterval
+  int turn_ = 0;  // whose load margin comes next; the number of fingers: the whole grasp's
+  EpsilonSolver epsilon_;
+  bool epsilon_begun_ = false;
+  int epsilon_ticks_ = 0;  // since the last beginning
 };
 
 }  // namespace regrasp
