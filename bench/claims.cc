@@ -34,7 +34,7 @@ struct Options {
                     estimator = "least_squares", finger;
   int seeds = 5, jobs = 2, iterations = 0;
   std::uint64_t first = 1;
-  double seconds = 60, turns = 1, speed = 0;
+  double seconds = 60, warm = -1, turns = 1, speed = 0;
   std::string axis = "0,0,-1";
   bool exact = false, rows = false, exploring = false;
   std::vector<std::pair<std::string, double>> set;
@@ -49,6 +49,7 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
   if (o.iterations > 0) config.world.iterations = o.iterations;
+  if (o.warm >= 0) config.world.contact_warm_start = o.warm;
   if (o.exact) config.world.stepper = Stepper::kExact;
   for (const auto& [name, value] : o.set) {
     const int index = FindParameter(name);
@@ -481,6 +482,7 @@ int main(int argc, char** argv) {
     else if (a == "--exact")
       o.exact = true;
     else if (a == "--iterations") o.iterations = std::stoi(next());
+    else if (a == "--warm") o.warm = std::stod(next());
     else if (a == "--rows")
       o.rows = true;
     else if (a == "--set") {

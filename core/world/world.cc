@@ -71,6 +71,7 @@ struct World::Impl {
   void CheckInputs() const;
   void ApplyInputs();
   void ApplyJointTorques();
+  Vector3d Preload(const ObjectHit& hit) const;
   void MakeContacts();
   void ApplyJointLoads();
   void UpdateJointLoads();
@@ -117,6 +118,7 @@ struct World::Impl {
   FixedVector<ObjectHit, kMaxObjectContacts> object_hits;
   FixedVector<LinkHit, kMaxLinkHits> link_hits;
   std::array<dJointFeedback, kMaxObjectContacts> feedback{};
+  FixedVector<Vector3d, kMaxObjectContacts> preload;  // of object_hits [N]
 
   WorldState state;
   StageTimes times;
@@ -281,9 +283,30 @@ void World::Impl::ApplyJointTorques() {
   }
 }
 
+// The part of the last step's contact force with this link that goes in as an external force [N].
+Vector3d World::Impl::Preload(const ObjectHit& hit) const {
+  Vector3d force = Vector3d::Zero();
+  int count = 0;
+  for (const ObjectContact& contact : state.contacts) {
+    if (contact.link != hit.link) continue;
+    force += contact.force_W;
+    ++count;
+  }
+  const double normal_force = force.dot(ToVector(hit.geom.normal));
+  if (count == 0 || normal_force <= 0) return Vector3d::Zero();
+  // Never more than the contact's spring holds now, so that a parting contact lets go at once.
+  const double spring = count * config.contact_stiffness * hit.geom.depth;
+  return std::min(1.0, spring / normal_force) * config.contact_warm_start / count * force;
+}
+
+// With the fast stepper most of each contact's last force goes in as an external force, and the
+// solver finds the rest, still bounded by "pushes only" and by the friction pyramid: so the total stays
+// inside the pyramid.
 void World::Impl::MakeContacts() {
   dJointGroupEmpty(contact_group);
   collider->Collide(&object_hits, &link_hits);
+  preload.resize(object_hits.size());
+  for (Vector3d& f : preload) f.setZero();
   const double hk = config.dt * config.contact_stiffness;
   dContact contact{};
   contact.surface.mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;
@@ -292,6 +315,18 @@ void World::Impl::MakeContacts() {
   contact.surface.mu = friction;
   for (std::size_t i = 0; i < object_hits.size(); ++i) {
     contact.geom = object_hits[i].geom;
+    contact.surface.mode &= ~dContactMotionN;
+    if (config.stepper == Stepper::kFast) {
+      preload[i] = Preload(object_hits[i]);
+      const dReal* p = contact.geom.pos;
+      const Vector3d& f = preload[i];
+      dBodyAddForceAtPos(object_body, f.x(), f.y(), f.z(), p[0], p[1], p[2]);
+      if (object_hits[i].body)
+        dBodyAddForceAtPos(object_hits[i].body, -f.x(), -f.y(), -f.z(), p[0], p[1], p[2]);
+      // The contact's spring has yielded to the part that is there already.
+      contact.surface.mode |= dContactMotionN;
+      contact.surface.motionN = -contact.surface.soft_cfm * f.dot(ToVector(contact.geom.normal));
+    }
     const dJointID joint = dJointCreateContact(world, contact_group, &contact);
     dJointAttach(joint, object_body, object_hits[i].body);
     feedback[i] = dJointFeedback{};
@@ -392,7 +427,7 @@ void World::Impl::ReadState() {
     contact.finger = finger_of_tip[hit.link];
     contact.p_WC = ToVector(hit.geom.pos);
     contact.normal_W = -ToVector(hit.geom.normal);
-    contact.force_W = ToVector(feedback[i].f1);
+    contact.force_W = ToVector(feedback[i].f1) + preload[i];
     contact.depth = hit.geom.depth;
     state.contacts.push_back(contact);
   }

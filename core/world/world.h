@@ -25,13 +25,14 @@ enum class Stepper {
 struct WorldConfig {
   double dt = 1e-3;                   ///< step [s]
   Stepper stepper = Stepper::kFast;
-  int iterations = 10;                ///< QuickStep iterations, at least 10 (why: docs/world.md)
+  int iterations = 12;                ///< QuickStep iterations, at least 10 (why: docs/world.md)
   double contact_stiffness = 4000;    ///< [N/m]
   double contact_damping = 8;         ///< [N s/m]
   double over_relaxation = 1.3;       ///< QuickStep's SOR parameter
   double joint_erp = 0.5;             ///< share of a joint's position error removed per step
   double joint_cfm = 1e-10;           ///< ODE's softness of the joint and friction rows [m/(N s)]
-  double warm_start = 0.9;            ///< QuickStep: share of the last joint forces to start from, 0 to 1
+  double warm_start = 1.0;            ///< QuickStep: share of the last joint forces to start from, 0 to 1
+  double contact_warm_start = 0.98;   ///< QuickStep: share of a contact's last force to start from, 0 to 0.98
   bool merge_universal = true;        ///< perpendicular joint pairs sharing an anchor become one universal joint
 };
 
