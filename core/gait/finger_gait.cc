@@ -11,6 +11,8 @@ constexpr double kRecoverLimit_s = 2.0;
 constexpr double kRecovered = 0.5;   // of the limits at which a regrasp is broken off
 constexpr double kFinish_s = 0.4;
 constexpr double kProgress = 0.02;   // rad: a cycle that turns the object less has not turned it
+constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
+constexpr int kSearchLimit = 300;    // evaluations
 constexpr int kIdleCycles = 2;       // cycles without progress before the gait gives up
 
 }  // namespace
@@ -19,7 +21,9 @@ std::string_view Name(GaitPhase phase) {
   switch (phase) {
     case GaitPhase::kIdle: return "idle";
     case GaitPhase::kObjectMotion: return "object motion";
+    case GaitPhase::kStance: return "stance";
     case GaitPhase::kSettle: return "settle";
+    case GaitPhase::kChoose: return "choose";
     case GaitPhase::kRegrasp: return "regrasp";
     case GaitPhase::kRecover: return "recover";
     case GaitPhase::kFinish: return "finish";
@@ -40,10 +44,9 @@ void FingerGait::Start(const Request& request, const HandModel& hand, const Esti
     const FingerEstimate& f = estimate.fingers[i];
     home_.p_OC[i] = f.p_WC - wrench.p_ref();
     home_.manipulability[i] = f.manipulability;
-    p_OF_home_[i] = f.p_WF - wrench.p_ref();
-    normal_home_[i] = f.normal_W;
+    home_stance_.push_back({home_.p_OC[i], f.p_WF - wrench.p_ref(), f.normal_W});
   }
-  Enter(GaitPhase::kSettle);
+  Enter(GaitPhase::kStance);
 }
 
 void FingerGait::Stop() {
@@ -57,6 +60,20 @@ void FingerGait::Enter(GaitPhase phase) {
   phase_ = phase;
   ticks_ = 0;
   happened_.changed = true;
+}
+
+void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
+                              const ControlParameters& control, const GaitParameters& parameters) {
+  if (ticks_ == 1)
+    search_.Start(home_stance_, fingers_, order_.empty() ? -1 : order_.back().finger,
+                  parameters.max_shift, request_.seed);
+  if (ticks_ % kSearchTicks == 0)
+    search_.Step(weight, control.friction_estimate, estimate.object_scale, control.max_normal_force);
+  if (search_.margin() < parameters.margin_wanted && search_.evaluations() < kSearchLimit) return;
+  home_stance_ = search_.stance();
+  for (std::size_t i = 0; i < home_stance_.size(); ++i) home_.p_OC[i] = home_stance_[i].p_OC;
+  waiting_ = fingers_;
+  Enter(GaitPhase::kChoose);
 }
 
 void FingerGait::StartMotion(const GaitParameters& parameters) {
@@ -79,8 +96,9 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const GaitParameters& parameters) const {
   const Quaterniond ahead =
       FromRotationVector(-sign_ * parameters.lead * parameters.step_rad * request_.axis_W);
-  return {wrench.p_ref() + ahead * home_.p_OC[finger], wrench.p_ref() + ahead * p_OF_home_[finger],
-          ahead * normal_home_[finger]};
+  const StanceContact& home = home_stance_[finger];
+  return {wrench.p_ref() + ahead * home.p_OC, wrench.p_ref() + ahead * home.p_OF,
+          ahead * home.normal_W};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
@@ -110,7 +128,7 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
     if (pick < 0) break;
     const GaitStep& step = order_[pick];
     waiting_ &= ~(1u << step.finger);
-    if (!exploring && farthest < parameters.skip_distance) continue;
+    if ((!exploring || turned_before_ == 0) && farthest < parameters.skip_distance) continue;
     if (margins.without[step.finger] < parameters.margin_min) {
       refused_finger_ = happened_.refused_finger = step.finger;
       refused_margin_ = happened_.refused_margin = margins.without[step.finger];
@@ -158,7 +176,8 @@ void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameter
 }
 
 ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
-                                const Margins& margins, const ControlParameters& control,
+                                const Margins& margins, const Vector3d& gravity_W,
+                                const ControlParameters& control,
                                 const ExplorationParameters& exploration,
                                 const GaitParameters& parameters, double dt,
                                 HybridController* controller, FingerTasks* tasks) {
@@ -182,6 +201,14 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
   const ObjectWrench& wrench = controller->wrench();
 
   switch (phase_) {
+    case GaitPhase::kStance:
+      if (stop_) {
+        Enter(GaitPhase::kFinish);
+      } else {
+        SearchStance(estimate, control.mass_estimate * gravity_W, control, parameters);
+      }
+      break;
+
     case GaitPhase::kObjectMotion:
       motion = manipulation_.Update(hand, estimate, wrench, home_, fingers_, smooth_.all, parameters, dt);
       if (manipulation_.end() != LocalManipulation::End::kNone) {
@@ -196,6 +223,14 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       if (stop_) {
         Enter(GaitPhase::kFinish);
       } else if (ticks_ * dt >= parameters.settle_s) {
+        Enter(GaitPhase::kChoose);
+      }
+      break;
+
+    case GaitPhase::kChoose:
+      if (stop_) {
+        Enter(GaitPhase::kFinish);
+      } else {
         Next(hand, estimate, smooth_, wrench, parameters);
       }
       break;
@@ -227,7 +262,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       } else {
         ++regrasps_;
         ++regrasps_in_cycle_;
-        Next(hand, estimate, smooth_, wrench, parameters);
+        Enter(GaitPhase::kChoose);
       }
       break;
     }
@@ -238,7 +273,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       } else if (!Disturbed(estimate, wrench, kRecovered * parameters.abort_position,
                             kRecovered * parameters.abort_rotation) ||
                  ticks_ * dt > kRecoverLimit_s) {
-        Next(hand, estimate, smooth_, wrench, parameters);
+        Enter(GaitPhase::kChoose);
       }
       break;
 
@@ -269,7 +304,8 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   hasher->Add(regrasps_);
   hasher->Add(idle_cycles_);
   for (double margin : smooth_.without) hasher->Add(margin);
-  for (const Vector3d& p : p_OF_home_) hasher->Add(p);
+  search_.AddTo(hasher);
+  for (const StanceContact& contact : home_stance_) hasher->Add(contact.p_OF);
   manipulation_.AddTo(hasher);
   regrasp_.AddTo(hasher);
 }

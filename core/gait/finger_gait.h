@@ -6,14 +6,17 @@
 #include "core/gait/gait_table.h"
 #include "core/gait/local_manipulation.h"
 #include "core/gait/regrasp.h"
+#include "core/gait/stance_search.h"
 
 namespace regrasp {
 
 /// States of the gait; GaitFrame::phase.
 enum class GaitPhase : std::uint8_t {
   kIdle,
+  kStance,        ///< all fingers hold; contacts are sought from which the opposing finger may leave
   kObjectMotion,  ///< all fingers hold, the object turns
   kSettle,        ///< all fingers hold
+  kChoose,        ///< which finger comes next
   kRegrasp,       ///< S_L, S_R, ...: one finger moves, the others hold
   kRecover,       ///< a regrasp was broken off: all fingers hold until the object is back
   kFinish,        ///< the object comes to rest
@@ -53,9 +56,9 @@ class FingerGait {
   void Stop();
   /// One tick: sets every task, returns the object's motion. dt [s].
   ObjectMotion Update(const HandModel& hand, const Estimate& estimate, const Margins& margins,
-                      const ControlParameters& control, const ExplorationParameters& exploration,
-                      const GaitParameters& parameters, double dt, HybridController* controller,
-                      FingerTasks* tasks);
+                      const Vector3d& gravity_W, const ControlParameters& control,
+                      const ExplorationParameters& exploration, const GaitParameters& parameters,
+                      double dt, HybridController* controller, FingerTasks* tasks);
 
   GaitPhase phase() const { return phase_; }
   bool active() const {
@@ -82,6 +85,8 @@ class FingerGait {
   double manipulation_turned() const {
     return phase_ == GaitPhase::kObjectMotion ? manipulation_.turned() : 0.0;
   }
+  void SearchStance(const Estimate& estimate, const Vector3d& weight, const ControlParameters& control,
+                    const GaitParameters& parameters);
   void StartMotion(const GaitParameters& parameters);
   void EndMotion();
   /// Picks the next finger that shall and may leave, or starts the next object motion.
@@ -100,7 +105,8 @@ class FingerGait {
   unsigned fingers_ = 0;
   GaitOrder order_;
   LocalManipulation::Home home_;
-  std::array<Vector3d, kMaxFingers> p_OF_home_{}, normal_home_{};  // tip centre from the reference [m]
+  Stance home_stance_;  // where each finger comes back to
+  StanceSearch search_;
   std::array<Vector3d, kMaxFingers> gradient_{};                   // last of each finger
   LocalManipulation manipulation_;
   Regrasp regrasp_;

@@ -26,6 +26,8 @@ struct GaitParameters {
   double lag_rotation = 0.12;           ///< ... or so much [rad]
   // When a finger may leave.
   double margin_min = 0.10;             ///< rho_min: least load margin of the grasp without it [N]
+  double margin_wanted = 0.40;          ///< below it contacts are sought that allow more without the opposing finger [N]
+  double max_shift = 0.006;             ///< ... so far from the present ones [m]
   double skip_distance = 0.0012;        ///< a finger this near to its target stays [m]
   // Leaving and coming back.
   double transfer_s = 0.05;             ///< load transfer before a finger leaves, and after it is back [s]

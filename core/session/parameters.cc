@@ -93,6 +93,8 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"gait.lift_speed", "m/s", 0.005, 0.5, 1, "Hop: speed of the fingertip on its way up.", kMeasured, [](P& p) { return &p.gait.lift_speed; }},
   {"gait.limit_margin", "rad", 0, 0.5, 1, "Object motion ends with a joint this near to the limit it moves to.", kOurs, [](P& p) { return &p.gait.limit_margin; }},
   {"gait.margin_min", "N", 0, 10, 1, "Least load margin of the grasp without a finger at which that finger may leave.", kMeasured, [](P& p) { return &p.gait.margin_min; }},
+  {"gait.margin_wanted", "N", 0, 10, 1, "Load margin without the opposing finger below which better contacts are sought first.", kOurs, [](P& p) { return &p.gait.margin_wanted; }},
+  {"gait.max_shift", "m", 0, 0.02, 1, "How far from the present contacts they are sought.", kOurs, [](P& p) { return &p.gait.max_shift; }},
   {"gait.max_excursion", "m", 0.001, 0.1, 1, "Object motion ends with a contact this far from its first place in the palm.", kOurs, [](P& p) { return &p.gait.max_excursion; }},
   {"gait.min_manipulability", "", 0, 1, 1, "Object motion ends with a finger below this share of its first manipulability.", kOurs, [](P& p) { return &p.gait.min_manipulability; }},
   {"gait.mode", "", 0, 1, 1, "0: fingers explore for a better contact; 1: they return to their first one.", kOurs, [](P& p) { return &p.gait.mode; }},

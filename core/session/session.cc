@@ -532,7 +532,7 @@ struct Session::Impl {
       regrasp = RegraspRecord();
       regrasp.phi_before = TruePhiOf(finger);
     }
-    if (!happened.changed) return;
+    if (!happened.changed || gait.phase() == GaitPhase::kChoose) return;
     if (gait.phase() == GaitPhase::kRegrasp)
       Emit(EventKind::kGaitPhase, finger, static_cast<double>(gait.phase()), "%s: %s",
            hand.fingers[finger].name.c_str(), Name(gait.regrasp().phase()).data());
@@ -544,8 +544,8 @@ struct Session::Impl {
     FingerGait::Margins margins;
     margins.all = monitor.stability().load_margin;
     for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
-    motion = gait.Update(hand, estimator.estimate(), margins, parameters.control, parameters.exploration,
-                         parameters.gait, dt, &controller, &tasks);
+    motion = gait.Update(hand, estimator.estimate(), margins, parameters.gravity_W, parameters.control,
+                         parameters.exploration, parameters.gait, dt, &controller, &tasks);
     JudgeRotation();
     ReportGait();
     if (gait.active()) return;

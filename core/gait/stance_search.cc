@@ -1,0 +1,59 @@
+#include "core/gait/stance_search.h"
+
+#include "core/quality/load_margin.h"
+
+namespace regrasp {
+namespace {
+
+constexpr std::uint64_t kStream = 2000;
+constexpr double kStep = 0.0015;  // standard deviation of a trial step per axis [m]
+
+}  // namespace
+
+StanceContact Shifted(const StanceContact& contact, const Vector3d& step) {
+  const double radius = contact.p_OC.norm();
+  const Vector3d centre = contact.p_OC - radius * contact.normal_W;
+  const Quaterniond turn = FromRotationVector(contact.normal_W.cross(step) / radius);
+  return {centre + turn * (contact.p_OC - centre), centre + turn * (contact.p_OF - centre),
+          turn * contact.normal_W};
+}
+
+void StanceSearch::Start(const Stance& stance, unsigned fingers, int without, double max_shift,
+                         std::uint64_t seed) {
+  *this = StanceSearch();
+  first_ = best_ = stance;
+  fingers_ = fingers;
+  without_ = without;
+  max_shift_ = max_shift;
+  random_ = RandomStream(seed, kStream);
+}
+
+void StanceSearch::Step(const Vector3d& weight, double mu, double torque_scale, double max_force) {
+  Stance trial = best_;
+  if (evaluations_ > 0) {
+    for (std::size_t i = 0; i < trial.size(); ++i) {
+      if (static_cast<int>(i) == without_) continue;
+      const Vector3d step = TangentPart(kStep * random_.Normal3(), trial[i].normal_W);
+      const StanceContact moved = Shifted(trial[i], step);
+      if ((moved.p_OC - first_[i].p_OC).norm() <= max_shift_) trial[i] = moved;
+    }
+  }
+  Grasp grasp;
+  for (std::size_t i = 0; i < trial.size(); ++i)
+    if (fingers_ >> i & 1u && static_cast<int>(i) != without_)
+      grasp.push_back({trial[i].p_OC, -trial[i].normal_W, mu});
+  const double margin = LoadMargin({grasp.data(), grasp.size()}, weight, torque_scale, max_force);
+  ++evaluations_;
+  if (margin <= margin_) return;
+  margin_ = margin;
+  best_ = trial;
+}
+
+void StanceSearch::AddTo(StateHasher* hasher) const {
+  hasher->Add(evaluations_);
+  hasher->Add(margin_);
+  for (const StanceContact& contact : best_) hasher->Add(contact.p_OC);
+  random_.AddTo(*hasher);
+}
+
+}  // namespace regrasp
