@@ -122,7 +122,8 @@ TEST_F(Jobs, AnExplorationsRecordIsComplete) {
   EXPECT_EQ(record["start_tick"], 6000);
   EXPECT_FALSE(record["reason"].is_null());
   EXPECT_EQ(client->Result("quality")["fingers"].size(), 5u);
-  for (const Json& contact : client->Result("truth")["contacts"])
+  const Json truth = client->Result("truth");
+  for (const Json& contact : truth["contacts"])
     for (const char* field : {"link", "finger", "p_WC_m", "normal_W", "force_W_n", "depth_m"})
       EXPECT_TRUE(contact.contains(field)) << field;
   const Json plot = client->Result("plot", {{"name", "quality"}, {"file", "q.png"}});
