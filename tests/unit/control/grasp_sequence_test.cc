@@ -1,0 +1,93 @@
+#include "core/control/grasp_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/control/held_sphere.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kDt = 1e-3;
+using Phase = GraspSequence::Phase;
+
+class GraspSequenceTest : public ::testing::Test {
+ protected:
+  /// Runs with the first `touching` fingers in contact from the start; true when it ended.
+  bool Run(int touching, int max_ticks) {
+    SensorReading reading = TouchingReading(hand_, scenario_.scenario.q_preshape, 0.2);
+    for (int i = touching; i < hand_.num_fingers(); ++i)
+      reading.fingertips[static_cast<std::size_t>(i)].in_contact = false;
+    StateEstimator estimator(hand_, kDt);
+    sequence_.Start(estimator.Update(reading, parameters_));
+    double progress = 0;
+    for (ticks_ = 0; ticks_ < max_ticks; ++ticks_) {
+      const Estimate& e = estimator.Update(reading, parameters_);
+      sequence_.Update(e, scenario_.scenario.q_closed, gravity_, parameters_, &controller_,
+                       &tasks_);
+      EXPECT_GE(sequence_.progress(), progress);  // never goes back
+      progress = sequence_.progress();
+      held_alone_ += !sequence_.needs_stand_in();
+      EXPECT_TRUE(controller_.Update(e, tasks_, {}, gravity_, parameters_).allFinite());
+      if (sequence_.phase() == Phase::kDone || sequence_.phase() == Phase::kFailed) return true;
+    }
+    return false;
+  }
+
+  const LoadedScenario scenario_ = ShadowHand();
+  const HandModel& hand_ = scenario_.hand;
+  const Vector3d gravity_ = GraspGravity();
+  const ControlParameters parameters_;
+  GraspSequence sequence_{hand_, kDt};
+  HybridController controller_{hand_, kDt};
+  FingerTasks tasks_;
+  int ticks_ = 0, held_alone_ = 0;
+};
+
+TEST_F(GraspSequenceTest, LetsGoOfTheObjectLongBeforeItIsDone) {
+  ASSERT_TRUE(Run(5, 20000));
+  EXPECT_EQ(sequence_.phase(), Phase::kDone);
+  EXPECT_FALSE(sequence_.needs_stand_in());
+  EXPECT_NEAR(held_alone_ * kDt, parameters_.settle_s, 3 * kDt);  // a tick per change of phase
+  EXPECT_EQ(sequence_.progress(), 1.0);
+  for (const FingerTask& task : tasks_) {
+    EXPECT_EQ(task.mode, FingerMode::kHold);
+    EXPECT_NEAR(task.grip, parameters_.grip_force, 1e-12);
+    EXPECT_NEAR(task.cap, parameters_.max_normal_force, 1e-12);
+  }
+}
+
+TEST_F(GraspSequenceTest, ThreeFingersAreEnoughTwoAreNot) {
+  ASSERT_TRUE(Run(3, 20000));
+  EXPECT_EQ(sequence_.phase(), Phase::kDone);
+  EXPECT_EQ(tasks_[4].mode, FingerMode::kPosture);  // never touched: takes no part
+  sequence_ = GraspSequence(hand_, kDt);
+  held_alone_ = 0;
+  ASSERT_TRUE(Run(2, 20000));
+  EXPECT_EQ(sequence_.phase(), Phase::kFailed);
+  EXPECT_TRUE(sequence_.needs_stand_in());
+  EXPECT_EQ(held_alone_, 0);  // the object was never left alone
+}
+
+TEST_F(GraspSequenceTest, ClosesNoFasterThanItsSpeed) {
+  SensorReading reading = TouchingReading(hand_, scenario_.scenario.q_preshape, 0);
+  for (FingertipReading& r : reading.fingertips) r.in_contact = false;
+  StateEstimator estimator(hand_, kDt);
+  const Estimate& e = estimator.Update(reading, parameters_);
+  sequence_.Start(e);
+  FingerTasks before;
+  for (int tick = 0; tick < 3000 && sequence_.phase() != Phase::kFailed; ++tick) {
+    sequence_.Update(e, scenario_.scenario.q_closed, gravity_, parameters_, &controller_, &tasks_);
+    if (tick > 0 && sequence_.phase() == Phase::kClose) {
+      for (std::size_t i = 0; i < tasks_.size(); ++i)
+        ASSERT_LE((tasks_[i].q_target - before[i].q_target).cwiseAbs().maxCoeff(),
+                  parameters_.close_speed * kDt * (1 + 1e-9));
+    }
+    before = tasks_;
+  }
+  EXPECT_EQ(sequence_.phase(), Phase::kFailed);
+}
+
+}  // namespace
+}  // namespace regrasp

@@ -1,0 +1,123 @@
+#include "core/exploration/objective.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+
+#include "core/exploration/walls.h"
+#include "core/quality/stability.h"
+#include "tests/unit/control/held_sphere.h"
+
+namespace regrasp {
+namespace {
+
+constexpr unsigned kAll = 0b11111;
+
+class ObjectiveTest : public ::testing::Test {
+ protected:
+  ObjectiveValue Value(Criterion criterion, double weight = 1, bool was_on_stability = false) {
+    return Objective(criterion, 2, kAll, estimate_, parameters_, weight, was_on_stability);
+  }
+  const LoadedScenario scenario_ = ShadowHand();
+  const HandModel& hand_ = scenario_.hand;
+  const Estimate estimate_ = TouchingEstimate(hand_, GraspPosture(hand_));
+  ControlParameters parameters_;
+};
+
+TEST_F(ObjectiveTest, CriteriaAreTheirDefinitions) {
+  const double manipulability = estimate_.fingers[2].manipulability;
+  const double stability = GraspStability(estimate_, kAll, parameters_);
+  EXPECT_GT(manipulability, 0);
+  EXPECT_GT(stability, 0);
+  EXPECT_EQ(Value(Criterion::kManipulability).phi, manipulability);
+  EXPECT_EQ(Value(Criterion::kStability).phi, stability);
+  EXPECT_DOUBLE_EQ(Value(Criterion::kCombined, 2.5).phi, manipulability + 2.5 * stability);
+}
+
+TEST_F(ObjectiveTest, StabilityMeasureIsSelectable) {
+  const Grasp grasp = GraspOf(estimate_, kAll, parameters_.friction_estimate);
+  const SingularMeasures m =
+      ComputeSingularMeasures({grasp.data(), grasp.size()}, estimate_.object_scale);
+  const auto With = [&](StabilityMeasure measure) {
+    parameters_.stability_measure = static_cast<double>(measure);
+    return GraspStability(estimate_, kAll, parameters_);
+  };
+  EXPECT_EQ(With(StabilityMeasure::kMinSingularValue), m.min_singular_value);
+  EXPECT_EQ(With(StabilityMeasure::kSqrtDet), m.sqrt_det);
+  EXPECT_EQ(With(StabilityMeasure::kIsotropy), m.isotropy);
+}
+
+TEST_F(ObjectiveTest, SwitchHasHysteresis) {
+  const double stability = GraspStability(estimate_, kAll, parameters_);
+  const auto On = [&](double threshold, bool was) {
+    parameters_.stability_threshold = threshold;
+    const ObjectiveValue value = Value(Criterion::kSwitched, 1, was);
+    EXPECT_EQ(value.phi, value.on_stability ? stability : estimate_.fingers[2].manipulability);
+    return value.on_stability;
+  };
+  EXPECT_FALSE(On(0.99 * stability, false));
+  EXPECT_TRUE(On(1.01 * stability, false));
+  EXPECT_TRUE(On(0.99 * stability, true));  // stays until 5 % above the threshold
+  EXPECT_FALSE(On(0.94 * stability, true));
+}
+
+class WallsTest : public ObjectiveTest {};
+
+// At a joint's limit there is a wall, and the contact motion into it is one that would move that
+// joint further out; on the other side of the limit's margin there is none.
+TEST_F(WallsTest, JointLimitsAreWalls) {
+  ExplorationParameters parameters;
+  parameters.clearance = -1;  // other fingers apart
+  FixedVector<Wall, 8> walls;
+  int found = 0;
+  for (int finger = 0; finger < hand_.num_fingers(); ++finger) {
+    for (const int j : hand_.fingers[static_cast<std::size_t>(finger)].joints) {
+      const Joint& joint = hand_.joints[static_cast<std::size_t>(j)];
+      for (const bool upper : {false, true}) {
+        JointVector q = GraspPosture(hand_);
+        for (const int other : hand_.fingers[static_cast<std::size_t>(finger)].joints) {
+          const Joint& o = hand_.joints[static_cast<std::size_t>(other)];
+          q[other] = 0.5 * (o.lower + o.upper);
+        }
+        FindWalls(hand_, TouchingEstimate(hand_, q), finger, parameters, &walls);
+        EXPECT_TRUE(walls.empty());
+        const double inset = 0.5 * parameters.limit_margin;
+        q[j] = upper ? joint.upper - inset : joint.lower + inset;
+        const Estimate e = TouchingEstimate(hand_, q);
+        FindWalls(hand_, e, finger, parameters, &walls);
+        for (const Wall& wall : walls) {
+          ++found;
+          const FingerEstimate& f = e.fingers[static_cast<std::size_t>(finger)];
+          EXPECT_NEAR(wall.direction_W.norm(), 1, 1e-12);
+          EXPECT_NEAR(wall.direction_W.dot(f.normal_W), 0, 1e-12);
+          EXPECT_GT(wall.depth, 0);
+          // The least joint motion that moves the contact into the wall.
+          const FingerVector motion = f.J.completeOrthogonalDecomposition().solve(wall.direction_W);
+          Eigen::Index k = 0;
+          while (
+              hand_.fingers[static_cast<std::size_t>(finger)].joints[static_cast<std::size_t>(k)] !=
+              j)
+            ++k;
+          EXPECT_GT((upper ? 1 : -1) * motion[k], 0) << joint.name << (upper ? " upper" : " lower");
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 22);  // of 44 limits; those along the normal are no walls
+}
+
+TEST_F(WallsTest, ANeighbourIsAWallFromTheClearanceOn) {
+  ExplorationParameters parameters;
+  parameters.limit_margin = -1;  // joint limits apart
+  FixedVector<Wall, 8> walls;
+  parameters.clearance = 0;  // the posture keeps links 3 mm apart
+  FindWalls(hand_, estimate_, 1, parameters, &walls);
+  EXPECT_TRUE(walls.empty());
+  parameters.clearance = 0.2;  // everything is near
+  FindWalls(hand_, estimate_, 1, parameters, &walls);
+  EXPECT_TRUE(walls.full());  // and the list does not run over
+  for (const Wall& wall : walls) EXPECT_TRUE(wall.direction_W.allFinite());
+}
+
+}  // namespace
+}  // namespace regrasp
