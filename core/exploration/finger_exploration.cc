@@ -13,6 +13,10 @@ constexpr double kWorthReturning = 1.005;
 constexpr double kReturnGain = 8.0;   // 1/s
 constexpr double kReturned_m = 0.0005;
 constexpr double kReturnLimit_s = 2.5;
+constexpr double kForceShare = 0.5;
+constexpr double kLeastForce = 0.5;     // of exploration.normal_force
+constexpr double kObjectError_m = 0.002;  // the finger slows down beyond this error of the object ...
+constexpr double kObjectStop_m = 0.003;   // ... and waits beyond this one
 constexpr double kLost_s = 0.30;  // sliding without contact for so long ends the exploration
 
 }  // namespace
@@ -51,12 +55,18 @@ void FingerExploration::EndSlide(const Estimate& estimate, HybridController* con
 
 void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
                                const ControlParameters& control,
-                               const ExplorationParameters& parameters, double dt,
-                               HybridController* controller, FingerTasks* tasks) {
+                               const ExplorationParameters& parameters,
+                               double load_margin_without, double dt, HybridController* controller,
+                               FingerTasks* tasks) {
   slide_began_ = slide_ended_ = false;
   if (phase_ == Phase::kIdle || phase_ == Phase::kDone) return;
   const FingerEstimate& finger = estimate.fingers[request_.finger];
   FingerTask& task = (*tasks)[request_.finger];
+  if (phase_ == Phase::kUnload && ticks_ == 0) {
+    // What the finger drags on the object must stay small against what the others can carry.
+    slide_force_ = std::clamp(kForceShare * load_margin_without, kLeastForce * parameters.normal_force,
+                              parameters.normal_force);
+  }
   const double ramp = std::min(1.0, ++ticks_ * dt / std::max(dt, parameters.transfer_s));
 
   if (phase_ == Phase::kUnload || phase_ == Phase::kReload) {
@@ -64,7 +74,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     task.mode = FingerMode::kHold;
     // While unloading the cap comes down from the grip force: above it nothing would be relieved.
     const double top = share < 1.0 ? control.grip_force : control.max_normal_force;
-    task.cap = parameters.normal_force + share * (top - parameters.normal_force);
+    task.cap = slide_force_ + share * (top - slide_force_);
     task.grip = std::min(control.grip_force, task.cap);
     if (ramp >= 1.0 || stop_) {
       if (phase_ == Phase::kReload || stop_) {
@@ -84,7 +94,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   task.mode = FingerMode::kSlide;
-  task.force = parameters.normal_force;
+  task.force = slide_force_;
   task.v_W.setZero();
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
   FindWalls(hand, estimate, request_.finger, parameters, &input.walls);
@@ -109,6 +119,9 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     EndSlide(estimate, controller);
     return;
   }
+  const double object_error = (controller->wrench().p_ref() - estimate.p_WO).norm();
+  const double patience = std::clamp(
+      (kObjectStop_m - object_error) / (kObjectStop_m - kObjectError_m), 0.0, 1.0);
   if (phase_ == Phase::kReturn) {
     const Vector3d p_best_W = estimate.p_WO + estimate.q_WO * p_OC_best_;
     const Vector3d error = TangentPart(p_best_W - finger.p_WC, finger.normal_W);
@@ -116,7 +129,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     if (distance < kReturned_m || ticks_ * dt > kReturnLimit_s) {
       EndSlide(estimate, controller);
     } else {
-      task.v_W = error * (std::min(parameters.speed_max, kReturnGain * distance) / distance);
+      task.v_W = patience * error * (std::min(parameters.speed_max, kReturnGain * distance) / distance);
     }
     return;
   }
@@ -124,7 +137,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
   Remember(estimate, dt);
   const SurfaceExploration::Status status = algorithm_.Update(input, parameters, dt);
   if (status == SurfaceExploration::Status::kRunning) {
-    task.v_W = algorithm_.velocity_W();
+    task.v_W = patience * algorithm_.velocity_W();
     return;
   }
   end_ = status == SurfaceExploration::Status::kConverged ? End::kGradient : End::kMaxCycles;
@@ -143,6 +156,7 @@ void FingerExploration::AddTo(StateHasher* hasher) const {
   hasher->Add(request_.finger);
   hasher->Add(request_.criterion);
   hasher->Add(on_stability_);
+  hasher->Add(slide_force_);
   hasher->Add(phi_initial_);
   hasher->Add(phi_best_);
   hasher->Add(p_OC_best_);

@@ -33,10 +33,11 @@ class FingerExploration {
   /// Ends sliding at the next tick and goes on to kReload.
   void Stop();
   /// One tick; changes the tasks of `request.finger` only. `grasp`: bits of the fingers that form the
-  /// grasp, this one included. dt [s].
+  /// grasp, this one included. load_margin_without: rho of the grasp without this finger [N]; where it is
+  /// small the finger presses less than exploration.normal_force. dt [s].
   void Update(const HandModel& hand, const Estimate& estimate, unsigned grasp, const ControlParameters& control,
-              const ExplorationParameters& parameters, double dt, HybridController* controller,
-              FingerTasks* tasks);
+              const ExplorationParameters& parameters, double load_margin_without, double dt,
+              HybridController* controller, FingerTasks* tasks);
 
   const Request& request() const { return request_; }
   Phase phase() const { return phase_; }
@@ -64,6 +65,7 @@ class FingerExploration {
   bool stop_ = false, slide_began_ = false, slide_ended_ = false;
   bool on_stability_ = false;
   End end_ = End::kNone;
+  double slide_force_ = 0.4;  // normal force of this exploration [N]
   double phi_ = 0, phi_initial_ = 0, phi_final_ = 0;
   double phi_smooth_ = 0, phi_best_ = 0;
   Vector3d p_OC_smooth_ = Vector3d::Zero(), p_OC_best_ = Vector3d::Zero();

@@ -109,6 +109,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"gravity", "m/s2", -50, 50, 3, "Gravity in W: turning it is tilting the palm.", kOurs, [](P& p) { return p.gravity_W.data(); }},
   {"object.friction", "", 0.01, 1, 1, "True friction coefficient of every contact.", "object model", [](P& p) { return &p.object.friction; }},
   {"object.mass_kg", "kg", 0.001, 2, 1, "True mass of the object.", "object model", [](P& p) { return &p.object.mass_kg; }},
+  {"start.displacement_m", "m", 0, 0.01, 1, "Every fingertip arrives so far from its place, along the surface in a direction drawn from the seed; takes effect at reset.", kOurs, [](P& p) { return &p.start.displacement_m; }},
   {"start.joint_sigma_rad", "rad", 0, 0.2, 1, "Spread of the start posture over seeds, per joint; takes effect at reset.", kOurs, [](P& p) { return &p.start.joint_sigma_rad; }},
   {"start.object_sigma_m", "m", 0, 0.02, 1, "Spread of the object's start position over seeds, per axis; takes effect at reset.", kOurs, [](P& p) { return &p.start.object_sigma_m; }},
 });

@@ -20,6 +20,7 @@ struct ObjectParameters {
 
 struct StartParameters {
   double joint_sigma_rad = 0.0523598775598;  ///< spread of the preshape over seeds (3 deg)
+  double displacement_m = 0;             ///< every fingertip arrives so far from its place, in a random direction
   double object_sigma_m = 0.002;             ///< spread of the object's start position over seeds
 };
 

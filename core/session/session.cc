@@ -129,6 +129,7 @@ struct Session::Impl {
       q0[j] = std::clamp(q0[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
       q_closed[j] = std::clamp(q_closed[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
     }
+    Displace(scenario.X_WO.translation(), &start, {&q0, &q_closed});
     Isometry3d X_WO = scenario.X_WO;
     X_WO.translation() += parameters.start.object_sigma_m * start.Normal3();
     world = std::make_unique<World>(hand, *object, config.world, q0, X_WO, seed);
@@ -160,6 +161,39 @@ struct Session::Impl {
     ToPosture(q_open);
     torque = JointVector::Zero(hand.num_joints());
     Sense();
+  }
+
+  /// Moves each fingertip's way in by start.displacement_m, along the surface in a random direction.
+  void Displace(const Vector3d& p_WO, RandomStream* random, std::initializer_list<JointVector*> postures) {
+    for (int i = 0; i < hand.num_fingers(); ++i) {
+      const Vector3d direction = random->Normal3();
+      if (parameters.start.displacement_m == 0) continue;
+      for (JointVector* q : postures) {
+        KinematicsData data;
+        ForwardKinematics(hand, *q, &data);
+        const Vector3d tip = FingertipCentre(hand, data, i);
+        const Vector3d target = tip + parameters.start.displacement_m *
+                                          TangentPart(direction, (tip - p_WO).normalized()).normalized();
+        MoveTip(i, target, q);
+      }
+    }
+  }
+
+  /// Inverse kinematics by damped least squares; stops at joint limits.
+  void MoveTip(int finger, const Vector3d& target, JointVector* q) const {
+    KinematicsData data;
+    for (int k = 0; k < 20; ++k) {
+      ForwardKinematics(hand, *q, &data);
+      const Vector3d tip = FingertipCentre(hand, data, finger);
+      const FingerJacobian J = PointJacobian(hand, data, finger, tip);
+      const Matrix3d JJt = J * J.transpose() + 1e-5 * Matrix3d::Identity();
+      const FingerVector dq = J.transpose() * (JJt.inverse() * (target - tip));
+      for (std::size_t n = 0; n < hand.fingers[finger].joints.size(); ++n) {
+        const int j = hand.fingers[finger].joints[n];
+        (*q)[j] = std::clamp((*q)[j] + dq[static_cast<Eigen::Index>(n)], hand.joints[j].lower,
+                             hand.joints[j].upper);
+      }
+    }
   }
 
   void ToPosture(const JointVector& q) {
@@ -419,7 +453,7 @@ struct Session::Impl {
   void UpdateExploration() {
     const bool was_on_stability = exploration.on_stability();
     exploration.Update(hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
-                       dt, &controller, &tasks);
+                       monitor.load_margin_without(exploration.request().finger), dt, &controller, &tasks);
     const int finger = exploration.request().finger;
     if (exploration.on_stability() != was_on_stability)
       Emit(EventKind::kCriterion, finger, exploration.on_stability(), "objective: %s",
