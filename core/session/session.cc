@@ -814,6 +814,14 @@ struct Session::Impl {
     monitor.AddTo(&hasher);
     hasher.Add(push_until);
     hasher.Add(release_tick);
+    hasher.Add(drop_ticks);
+    // Numbers that act later than the tick in which they were given.
+    hasher.Add(exploration.request().estimator);
+    hasher.Add(exploration.request().seed);
+    hasher.Add(exploration.request().max_cycles);
+    Parameters given = parameters;
+    for (const ParameterInfo& info : ParameterTable())
+      for (int k = 0; k < info.size; ++k) hasher.Add(info.access(given)[k]);
     return hasher.Digest();
   }
 
