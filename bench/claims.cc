@@ -294,7 +294,7 @@ struct PhiChange {
 
 /// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused, dropped, angle
 /// error deg, explored on manipulability, rose before-to-after, started below 98 % of best, of them rose,
-/// mean change start-to-after, link-link ticks}
+/// mean change start-to-after, mean after}
 Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
   if (!Grasp(session)) return {kFailed};
   Command c;
@@ -316,7 +316,7 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
       refused += e.kind == EventKind::kRefused;
       if (e.kind != EventKind::kRegrasp) continue;
       const RegraspRecord& r = session.last_regrasp();
-      if (o.exploring && r.criterion != Criterion::kStability && !r.on_stability && !r.aborted)
+      if (r.criterion != Criterion::kStability && !r.on_stability && !r.aborted)
         changes.push_back({r.finger, r.phi_before, r.phi_start, r.phi_after});
     }
     for (const JobRecord& j : session.TakeFinishedJobs()) job = j;
@@ -326,11 +326,15 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
     job.state = JobState::kFailed;
   }
   std::map<int, double> best;
-  for (const PhiChange& p : changes) best[p.finger] = std::max({best[p.finger], p.before, p.after});
-  double rose = 0, low = 0, low_rose = 0, gain = 0;
+  for (const PhiChange& p : changes) best[p.finger] = std::max(best[p.finger], p.after);
+  double rose = 0, low = 0, low_rose = 0, gain = 0, phi = 0;
   for (const PhiChange& p : changes) {
+    if (o.rows && o.exploring)
+      std::fprintf(stderr, "    finger %d manipulability %.4f -> %.4f -> %.4f\n", p.finger, p.before, p.start,
+                   p.after);
     rose += p.after > p.before;
     gain += p.after / p.start - 1;
+    phi += p.after;
     if (p.before >= 0.98 * best[p.finger]) continue;
     low += 1;
     low_rose += p.after > p.before;
@@ -359,7 +363,7 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
           low,
           low_rose,
           changes.empty() ? 0 : gain / static_cast<double>(changes.size()),
-          touching};
+          changes.empty() ? 0 : phi / static_cast<double>(changes.size())};
 }
 
 int Rotate(const Options& o) {
@@ -381,7 +385,7 @@ int Rotate(const Options& o) {
       return RotateTrial(session, o, a, o.first + k);
     });
     int done = 0, failed = 0, dropped = 0;
-    std::vector<double> rate, offset, tilt, error, slips, refused, gain;
+    std::vector<double> rate, offset, tilt, error, slips, refused, gain, phi;
     double explored = 0, rose = 0, low = 0, low_rose = 0;
     for (const Row& r : rows) {
       if (r.empty() || r[0] == kFailed) {
@@ -399,6 +403,7 @@ int Rotate(const Options& o) {
       slips.push_back(r[6]);
       refused.push_back(r[7]);
       gain.push_back(r[14]);
+      phi.push_back(r[15]);
       explored += r[10];
       rose += r[11];
       low += r[12];
@@ -412,8 +417,9 @@ int Rotate(const Options& o) {
     if (explored > 0)
       std::printf(
           "         manipulability rose in %.0f of %.0f regrasps, in %.0f of %.0f that began below 98 %% of the "
-          "best; by Algorithm 1 alone %+.1f %%\n",
-          rose, explored, low_rose, low, 100 * Mean(gain));
+          "best reached; afterwards %.4f on average%s\n",
+          rose, explored, low_rose, low, Mean(phi), o.exploring ? "" : " (returning only)");
+    if (o.exploring) std::printf("         Algorithm 1 alone %+.1f %%\n", 100 * Mean(gain));
     std::fflush(stdout);
   }
   return 0;

@@ -11,6 +11,8 @@ constexpr double kRecoverLimit_s = 2.0;
 constexpr double kRecovered = 0.5;   // of the limits at which a regrasp is broken off
 constexpr double kFinish_s = 0.4;
 constexpr double kProgress = 0.02;   // rad: a cycle that turns the object less has not turned it
+constexpr double kFoundShare = 0.5;  // weight of the newest exploration's end
+constexpr double kInsideDisc = 0.9;  // of the disc's radius: an exploration begins inside it
 constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
 constexpr int kSearchLimit = 300;    // evaluations
 constexpr int kIdleCycles = 2;       // cycles without progress before the gait gives up
@@ -76,6 +78,15 @@ void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
   Enter(GaitPhase::kChoose);
 }
 
+void FingerGait::Remember(int finger, const Estimate& estimate, const ObjectWrench& wrench,
+                          const GaitParameters& parameters) {
+  const Vector3d shift = estimate.fingers[finger].p_WC - wrench.p_ref() - home_stance_[finger].p_OC;
+  Vector3d& found = found_[finger];
+  found += kFoundShare * (shift - found);
+  const double limit = kInsideDisc * parameters.disc_radius;
+  if (found.norm() > limit) found *= limit / found.norm();
+}
+
 void FingerGait::StartMotion(const GaitParameters& parameters) {
   const double left = std::abs(request_.angle_rad) - turned_before_;
   const double step = request_.continuous ? parameters.step_rad : std::min(parameters.step_rad, left);
@@ -97,8 +108,13 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
   const Quaterniond ahead =
       FromRotationVector(-sign_ * parameters.lead * parameters.step_rad * request_.axis_W);
   const StanceContact& home = home_stance_[finger];
+  if (parameters.mode == static_cast<double>(GaitMode::kExploring)) {
+    const StanceContact found = Shifted(home, TangentPart(found_[finger], home.normal_W));
+    return {wrench.p_ref() + found.p_OC, wrench.p_ref() + found.p_OF, found.normal_W,
+            wrench.p_ref() + home.p_OC};
+  }
   return {wrench.p_ref() + ahead * home.p_OC, wrench.p_ref() + ahead * home.p_OF,
-          ahead * home.normal_W};
+          ahead * home.normal_W, wrench.p_ref() + ahead * home.p_OC};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
@@ -139,7 +155,6 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
     request.hop = parameters.hop > 0;
     request.explore = exploring;
     request.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
-    request.gradient_W = gradient_[step.finger];
     request.criterion = Criterion::kSwitched;
     if (step.objective == GaitObjective::kStabilityWithoutNext &&
         pick + 1 < static_cast<int>(order_.size())) {
@@ -248,7 +263,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       happened_.changed |= regrasp_.phase() != before;
       happened_.explore_began = regrasp_.explore_began();
       happened_.explore_ended = regrasp_.explore_ended();
-      if (happened_.explore_ended) gradient_[finger] = regrasp_.algorithm().gradient_W();
+      if (happened_.explore_ended) Remember(finger, estimate, wrench, parameters);
       if (regrasp_.active()) break;
       happened_.regrasp_ended = true;
       if (regrasp_.lost()) {
@@ -305,6 +320,7 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   hasher->Add(idle_cycles_);
   for (double margin : smooth_.without) hasher->Add(margin);
   search_.AddTo(hasher);
+  for (const Vector3d& found : found_) hasher->Add(found);
   for (const StanceContact& contact : home_stance_) hasher->Add(contact.p_OF);
   manipulation_.AddTo(hasher);
   regrasp_.AddTo(hasher);

@@ -87,6 +87,8 @@ class FingerGait {
   }
   void SearchStance(const Estimate& estimate, const Vector3d& weight, const ControlParameters& control,
                     const GaitParameters& parameters);
+  void Remember(int finger, const Estimate& estimate, const ObjectWrench& wrench,
+                const GaitParameters& parameters);
   void StartMotion(const GaitParameters& parameters);
   void EndMotion();
   /// Picks the next finger that shall and may leave, or starts the next object motion.
@@ -107,7 +109,9 @@ class FingerGait {
   LocalManipulation::Home home_;
   Stance home_stance_;  // where each finger comes back to
   StanceSearch search_;
-  std::array<Vector3d, kMaxFingers> gradient_{};                   // last of each finger
+  // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The next
+  // exploration of the finger starts there.
+  std::array<Vector3d, kMaxFingers> found_{};
   LocalManipulation manipulation_;
   Regrasp regrasp_;
   Margins smooth_;        // margins, low-passed

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace regrasp {
+namespace {
+
+constexpr double kStuck_s = 0.5;
+
+}  // namespace
 
 std::string_view Name(LocalManipulation::End end) {
   using End = LocalManipulation::End;
@@ -10,6 +15,7 @@ std::string_view Name(LocalManipulation::End end) {
     case End::kNone: return "moving";
     case End::kReached: return "reached";
     case End::kJointLimit: return "joint limit";
+    case End::kStuck: return "the object does not follow";
     case End::kManipulability: return "manipulability";
     case End::kExcursion: return "excursion";
     case End::kMargin: return "load margin";
@@ -37,6 +43,7 @@ LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const E
     const Matrix3d inverse = (f.J * f.J.transpose() + 1e-6 * Matrix3d::Identity()).inverse();
     const Vector3d along = inverse * v;
     const auto& joints = hand.fingers[i].joints;
+    bool limited = false;
     for (std::size_t k = 0; k < joints.size(); ++k) {
       const double q = estimate.q[joints[k]];
       const double rate = f.J.col(static_cast<Eigen::Index>(k)).dot(along);
@@ -45,8 +52,10 @@ LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const E
       constexpr double kMoves = 0.3;  // rad per rad of the object
       if ((q > joint.upper - parameters.limit_margin && rate > kMoves) ||
           (q < joint.lower + parameters.limit_margin && rate < -kMoves))
-        return End::kJointLimit;
+        limited = true;
     }
+    if (turned_ == 0 && limited) at_limit_at_first_ |= 1u << i;
+    if (limited && !(at_limit_at_first_ >> i & 1u)) return End::kJointLimit;
     if (f.manipulability < parameters.min_manipulability * home.manipulability[i])
       return End::kManipulability;
     const Vector3d excursion = f.p_WC - p_ref - home.p_OC[i];
@@ -65,11 +74,13 @@ ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& es
   const double e_p = (wrench.p_ref() - estimate.p_WO).norm();
   const double e_r = RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
   const bool wait = e_p > parameters.lag_position || e_r > parameters.lag_rotation;
+  waited_ = wait ? waited_ + 1 : 0;
   double wanted = stop_ || wait ? 0.0 : speed_max_;
   wanted = std::min(wanted, std::sqrt(2.0 * parameters.acceleration * std::max(0.0, left)));
   const double change = parameters.acceleration * dt;
   speed_ = std::clamp(wanted, speed_ - change, speed_ + change);
   speed_ = std::min(std::max(speed_, 0.0), left / dt);
+  const End found = FindEnd(hand, estimate, wrench.p_ref(), home, fingers, margin, parameters);
   turned_ += speed_ * dt;
   motion.w_W = speed_ * axis_W_;
   constexpr double kThere = 1e-4;  // rad
@@ -78,7 +89,7 @@ ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& es
   } else if (stop_ && speed_ <= 0) {
     end_ = End::kStopped;
   } else {
-    end_ = FindEnd(hand, estimate, wrench.p_ref(), home, fingers, margin, parameters);
+    end_ = waited_ * dt > kStuck_s ? End::kStuck : found;
   }
   return motion;
 }
@@ -89,6 +100,8 @@ void LocalManipulation::AddTo(StateHasher* hasher) const {
   hasher->Add(turned_);
   hasher->Add(speed_);
   hasher->Add(stop_);
+  hasher->Add(at_limit_at_first_);
+  hasher->Add(waited_);
   hasher->Add(end_);
 }
 

@@ -16,7 +16,8 @@ class LocalManipulation {
   enum class End : std::uint8_t {
     kNone,            ///< still moving
     kReached,         ///< where it should
-    kJointLimit,      ///< a joint is at its limit and would have to go on
+    kJointLimit,      ///< a joint has come to its limit and would have to go on
+    kStuck,           ///< the object has not followed its reference for some time
     kManipulability,  ///< a finger is near a singular posture
     kExcursion,       ///< a contact is too far from its first place
     kMargin,          ///< the grasp could hardly carry more
@@ -53,6 +54,8 @@ class LocalManipulation {
   double angle_ = 0, speed_max_ = 0;
   double turned_ = 0, speed_ = 0;
   bool stop_ = false;
+  unsigned at_limit_at_first_ = 0;  // bits of the fingers with a joint at its limit when the motion began
+  int waited_ = 0;                  // ticks
   End end_ = End::kNone;
   int end_finger_ = -1;
 };

@@ -77,7 +77,7 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
 
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
   FindWalls(hand, estimate, request_.finger, exploration, &input.walls);
-  const Vector3d out = TangentPart(finger.p_WC - target.p_WC, finger.normal_W);
+  const Vector3d out = TangentPart(finger.p_WC - target.p_WD, finger.normal_W);
   const double excess = out.norm() - parameters.disc_radius;
   if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess});
 

@@ -31,7 +31,6 @@ class Regrasp {
     bool explore = false;
     Criterion criterion = Criterion::kManipulability;
     int without = -1;     ///< explore: the stability that counts is that without this finger; -1: with all
-    Vector3d gradient_W = Vector3d::Zero();  ///< explore: start gradient; 0 draws one at random
     std::uint64_t seed = 0;
   };
   /// Where the finger shall go, in W; follows the object's reference position.
@@ -39,6 +38,7 @@ class Regrasp {
     Vector3d p_WC = Vector3d::Zero();      ///< contact [m]
     Vector3d p_WF = Vector3d::Zero();      ///< fingertip centre [m]
     Vector3d normal_W = Vector3d::UnitZ(); ///< outward
+    Vector3d p_WD = Vector3d::Zero();      ///< explore: centre of the disc it may not leave [m]
   };
 
   void Start(const Request& request);

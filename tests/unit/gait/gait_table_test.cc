@@ -1,0 +1,112 @@
+// The gait's table, and how it is fitted to a hand.
+
+#include "core/gait/gait_table.h"
+
+#include <gtest/gtest.h>
+
+#include "core/gait/stance_search.h"
+#include "core/quality/load_margin.h"
+
+namespace regrasp {
+namespace {
+
+HandModel HandWith(std::initializer_list<const char*> names) {
+  HandModel hand;
+  for (const char* name : names) {
+    Finger finger;
+    finger.name = name;
+    hand.fingers.push_back(finger);
+  }
+  return hand;
+}
+
+/// Contacts with these outward normals on a ball of 25 mm at the origin.
+Estimate Touching(std::initializer_list<Vector3d> normals) {
+  Estimate estimate;
+  for (const Vector3d& n : normals) {
+    FingerEstimate finger;
+    finger.ever_in_contact = finger.in_contact = true;
+    finger.normal_W = n.normalized();
+    finger.p_WC = 0.025 * finger.normal_W;
+    estimate.fingers.push_back(finger);
+  }
+  return estimate;
+}
+
+TEST(GaitTable, ReadsLikeThePaper) {
+  const char* states[] = {"object motion", "S_L", "S_R", "S_M", "S_F", "S_T"};
+  const char* fingers[] = {"", "little", "ring", "middle", "first", "thumb"};
+  for (std::size_t k = 0; k < kGaitTable.size(); ++k) {
+    EXPECT_EQ(kGaitTable[k].state, states[k]);
+    EXPECT_EQ(kGaitTable[k].finger, fingers[k]);
+    EXPECT_EQ(kGaitTable[k].objective == GaitObjective::kStabilityWithoutNext, k == 4);
+  }
+}
+
+TEST(GaitOrder, OfTheFiveFingeredHandIsTheTable) {
+  const HandModel hand = HandWith({"first", "middle", "ring", "little", "thumb"});
+  const Estimate estimate =
+      Touching({{0.3, 1, 0}, {0.1, 1, 0}, {-0.1, 1, 0}, {-0.3, 1, 0}, {0, -1, 0}});
+  const GaitOrder order = MakeGaitOrder(hand, estimate, 0b11111);
+  const int expected[] = {3, 2, 1, 0, 4};
+  ASSERT_EQ(order.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(order[k].finger, expected[k]);
+  EXPECT_EQ(order[3].objective, GaitObjective::kStabilityWithoutNext);
+}
+
+TEST(GaitOrder, OpposingFingerComesLastWhateverItsName) {
+  const HandModel hand = HandWith({"a", "b", "c"});
+  const Estimate estimate = Touching({{0, -1, 0}, {0.3, 1, 0}, {-0.3, 1, 0}});
+  const GaitOrder order = MakeGaitOrder(hand, estimate, 0b111);
+  ASSERT_EQ(order.size(), 3u);
+  EXPECT_EQ(order[0].finger, 1);
+  EXPECT_EQ(order[1].finger, 2);
+  EXPECT_EQ(order[2].finger, 0);
+  EXPECT_EQ(order[1].objective, GaitObjective::kStabilityWithoutNext);
+}
+
+TEST(GaitOrder, LeavesOutFingersThatDoNotHold) {
+  const HandModel hand = HandWith({"first", "middle", "ring", "little", "thumb"});
+  const Estimate estimate =
+      Touching({{0.3, 1, 0}, {0.1, 1, 0}, {-0.1, 1, 0}, {-0.3, 1, 0}, {0, -1, 0}});
+  const GaitOrder order = MakeGaitOrder(hand, estimate, 0b10101);
+  ASSERT_EQ(order.size(), 3u);
+  for (const GaitStep& step : order) EXPECT_TRUE(step.finger % 2 == 0);
+}
+
+TEST(Stance, ShiftedContactStaysOnTheBall) {
+  const double radius = 0.025, tip = 0.007;
+  const Vector3d n = Vector3d(1, 2, 3).normalized();
+  const StanceContact contact{radius * n, (radius + tip) * n, n};
+  const Vector3d step = 0.006 * n.cross(Vector3d::UnitX()).normalized();
+  const StanceContact moved = Shifted(contact, step);
+  // Exact up to rounding: on a ball the surface model is the surface.
+  EXPECT_NEAR(moved.p_OC.norm(), radius, 1e-12);
+  EXPECT_LT((moved.normal_W - moved.p_OC.normalized()).norm(), 1e-12);
+  EXPECT_NEAR((moved.p_OF - moved.p_OC).norm(), tip, 1e-12);
+  // An arc of 6 mm on 25 mm has a chord of 2 * 25 * sin(6 / 50) mm.
+  EXPECT_NEAR((moved.p_OC - contact.p_OC).norm(), 2 * radius * std::sin(0.006 / (2 * radius)), 1e-12);
+}
+
+TEST(Stance, SearchRaisesTheMarginWithinItsBound) {
+  Stance stance;
+  // Four contacts that hardly hold the ball, and one opposing finger that is to leave.
+  for (const Vector3d& direction : {Vector3d(0.5, 0.8, 0.6), Vector3d(0.15, 0.8, -0.75),
+                                    Vector3d(-0.2, 0.75, -0.7), Vector3d(-0.75, -0.3, 0.4), Vector3d(0, -1, 0)}) {
+    const Vector3d n = direction.normalized();
+    stance.push_back({0.025 * n, 0.032 * n, n});
+  }
+  const Vector3d weight(0, 0, -0.785);
+  StanceSearch search;
+  search.Start(stance, 0b11111, 4, 0.006, 7);
+  search.Step(weight, 0.5, 0.025, 4.0);
+  const double first = search.margin();
+  for (int k = 0; k < 200; ++k) search.Step(weight, 0.5, 0.025, 4.0);
+  EXPECT_GT(search.margin(), first);
+  for (std::size_t i = 0; i < stance.size(); ++i)
+    EXPECT_LE((search.stance()[i].p_OC - stance[i].p_OC).norm(), 0.006 + 1e-12);
+  EXPECT_EQ(search.stance()[4].p_OC, stance[4].p_OC);
+}
+
+}  // namespace
+}  // namespace regrasp
