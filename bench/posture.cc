@@ -1,6 +1,6 @@
 // Searches the generic preshape and closed posture of a hand for its scenario file.
-//   posture [--hand NAME] [--seed S] [--steps N] [--radius MM] [--tilt DEG]
-// Random hill climbing over object position, contact directions and redundant joint angles. A
+//   posture [--hand NAME] [--seed S] [--steps N] [--radius MM] [--tilt DEG] [--reach 0..1]
+// Random hill climbing, from the scenario as it is and within `reach` of it, over object position, contact directions and redundant joint angles. A
 // posture is good when the grasp without each finger in turn (the thumb above all) keeps a load
 // margin, joints are far from their limits, no finger is near singular and links keep clear of each
 // other. Prints TOML.
@@ -167,13 +167,14 @@ int main(int argc, char** argv) {
   std::string name = "shadow";
   std::uint64_t seed = 1;
   int steps = 20000;
-  double radius = 0.025, tilt = 65;
+  double radius = 0.025, tilt = 65, reach = 1;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string a = argv[i];
     if (a == "--hand") name = argv[i + 1];
     if (a == "--seed") seed = std::stoull(argv[i + 1]);
     if (a == "--steps") steps = std::stoi(argv[i + 1]);
     if (a == "--radius") radius = std::stod(argv[i + 1]) * 1e-3;
+    if (a == "--reach") reach = std::stod(argv[i + 1]);
     if (a == "--tilt") tilt = std::stod(argv[i + 1]);
   }
   const LoadedScenario model = LoadScenario(name, "", ModelSearchPath());
@@ -201,7 +202,7 @@ int main(int argc, char** argv) {
   std::fprintf(stderr, "start: score %.3f\n", best.score);
 
   for (int step = 0; step < steps; ++step) {
-    const double scale = std::pow(0.1, 1.5 * step / steps);
+    const double scale = reach * std::pow(0.1, 1.5 * step / steps);
     Candidate c = best;
     std::vector<Vector3d> directions;
     for (int f = 0; f < hand.num_fingers(); ++f) directions.push_back(Direction(c, f));
