@@ -151,7 +151,7 @@ void Print(const char* state, const Row& row, const Measured& m, const Measured&
   const double total = m.total.Quantile(.5);
   std::printf("%-9s %-16s", state, row.name().c_str());
   for (const Samples* s : {&m.sense, &m.control, &m.collide, &m.step, &m.total})
-    std::printf("  %6.1f %6.1f", s->Quantile(.5), s->Quantile(.99));
+    std::printf("  %6.1f %6.1f %6.1f", s->Quantile(.5), s->Quantile(.9), s->Quantile(.99));
   std::printf("   %5.2f   %7.4f %5.2f  %7.1f\n", total / bare_us, m.ForceNoise(),
               m.ForceNoise() / exact.ForceNoise(), 1e6 * m.drift_m);
 }
@@ -187,10 +187,10 @@ int Main(int argc, char** argv) {
       for (Row& row : rows)
         for (int k = 0; k < kBlock && row.ok(); ++k) exploring ? row.ExploreTick() : row.HoldTick();
 
-  std::printf("%-9s %-16s  %13s  %13s  %13s  %13s  %13s   %5s   %7s %5s  %7s\n", "state", "stepper",
+  std::printf("%-9s %-16s  %20s  %20s  %20s  %20s  %20s   %5s   %7s %5s  %7s\n", "state", "stepper",
               "sense", "control", "collide", "step", "tick", "ratio", "F sd N", "rel", "drift um");
   std::printf("%-26s", "[us]");
-  for (int i = 0; i < 5; ++i) std::printf("  %6s %6s", "median", "p99");
+  for (int i = 0; i < 5; ++i) std::printf("  %6s %6s %6s", "median", "p90", "p99");
   std::printf("\n");
   for (int exploring = 0; exploring < 2; ++exploring) {
     const auto Of = [&](const Row& row) -> const Measured& {

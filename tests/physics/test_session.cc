@@ -341,9 +341,11 @@ TEST(Session, SurvivesAChangeOfGravity) {
               Kind::kAllowed);
     run.Ticks(1000);
     ASSERT_EQ(run.session.state(), SessionState::kHolding) << "step " << step;
-    // Turned weights are learnt by the integral, 300 N/(m s): some millimetres on the way, bounded
-    // by the error limit of 10 mm.
-    ASSERT_LT((run.session.truth().p_WO - p0).norm(), 10e-3) << "step " << step;
+    // A weight that points elsewhere is learnt by the integral, 300 N/(m s), while the spring, 200
+    // N/m, holds it: a step of 30 degrees is 0.4 N, 2 mm, and the next comes before the last is
+    // learnt. Twice the distance that counts in the force law says that control is still in charge;
+    // a lost object is 30 mm off.
+    ASSERT_LT((run.session.truth().p_WO - p0).norm(), 20e-3) << "step " << step;
   }
 }
 
@@ -436,7 +438,9 @@ TEST(Session, TicksAllocateNothing) {
   EXPECT_EQ(Allocations(1000), 0) << "holding";
   for (command.finger = 0; command.finger < 5; ++command.finger) {
     ASSERT_TRUE(Give(CommandType::kExplore));
-    EXPECT_EQ(Allocations(4500), 0) << "exploring with finger " << command.finger;
+    long allocations = 0;
+    for (int s = 0; s < 15 && session.job_running(); ++s) allocations += Allocations(1000);
+    EXPECT_EQ(allocations, 0) << "exploring with finger " << command.finger;
     ASSERT_EQ(session.state(), SessionState::kHolding);
   }
   ASSERT_TRUE(Give(CommandType::kRelease));
