@@ -293,7 +293,8 @@ struct PhiChange {
 };
 
 /// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused, dropped, angle
-/// error deg, explored on manipulability, rose before-to-after, started below 98 % of best, of them rose,
+/// error deg, regrasps on manipulability, of them higher after than before, explorations begun below 98 % of best, of
+/// them rose,
 /// mean change start-to-after, mean after}
 Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
   if (!Grasp(session)) return {kFailed};
@@ -335,9 +336,9 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
     rose += p.after > p.before;
     gain += p.after / p.start - 1;
     phi += p.after;
-    if (p.before >= 0.98 * best[p.finger]) continue;
+    if (p.start >= 0.98 * best[p.finger]) continue;
     low += 1;
-    low_rose += p.after > p.before;
+    low_rose += p.after > p.start;
   }
   const RotateResult& r = job.rotate;
   const double wanted = o.turns * 360, angle = r.angle_rad * 180 / M_PI;
@@ -416,10 +417,13 @@ int Rotate(const Options& o) {
         Max(error), Mean(slips), Mean(refused));
     if (explored > 0)
       std::printf(
-          "         manipulability rose in %.0f of %.0f regrasps, in %.0f of %.0f that began below 98 %% of the "
-          "best reached; afterwards %.4f on average%s\n",
-          rose, explored, low_rose, low, Mean(phi), o.exploring ? "" : " (returning only)");
-    if (o.exploring) std::printf("         Algorithm 1 alone %+.1f %%\n", 100 * Mean(gain));
+          "         manipulability after a regrasp %.4f on average; above that before it in %.0f of %.0f\n",
+          Mean(phi), rose, explored);
+    if (o.exploring)
+      std::printf(
+          "         explorations raised it by %.1f %% on average; in %.0f of the %.0f that began below 98 %% of "
+          "the best reached\n",
+          100 * Mean(gain), low_rose, low);
     std::fflush(stdout);
   }
   return 0;

@@ -8,11 +8,11 @@ namespace {
 
 constexpr double kMarginFilter_s = 0.05;
 constexpr double kRecoverLimit_s = 2.0;
-constexpr double kRecovered = 0.5;   // of the limits at which a regrasp is broken off
+constexpr double kRecovered = 0.5;  // of the limits at which a regrasp is broken off
 constexpr double kFinish_s = 0.4;
 constexpr double kProgress = 0.02;   // rad: a cycle that turns the object less has not turned it
 constexpr double kFoundShare = 0.5;  // weight of the newest exploration's end
-constexpr double kInsideDisc = 0.9;  // of the disc's radius: an exploration begins inside it
+constexpr double kInsideDisc = 0.9;  // of the disc's radius: what is remembered lies inside it
 constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
 constexpr int kSearchLimit = 300;    // evaluations
 constexpr int kIdleCycles = 2;       // cycles without progress before the gait gives up
@@ -21,16 +21,26 @@ constexpr int kIdleCycles = 2;       // cycles without progress before the gait 
 
 std::string_view Name(GaitPhase phase) {
   switch (phase) {
-    case GaitPhase::kIdle: return "idle";
-    case GaitPhase::kObjectMotion: return "object motion";
-    case GaitPhase::kStance: return "stance";
-    case GaitPhase::kSettle: return "settle";
-    case GaitPhase::kChoose: return "choose";
-    case GaitPhase::kRegrasp: return "regrasp";
-    case GaitPhase::kRecover: return "recover";
-    case GaitPhase::kFinish: return "finish";
-    case GaitPhase::kDone: return "done";
-    case GaitPhase::kFailed: return "failed";
+    case GaitPhase::kIdle:
+      return "idle";
+    case GaitPhase::kObjectMotion:
+      return "object motion";
+    case GaitPhase::kStance:
+      return "stance";
+    case GaitPhase::kSettle:
+      return "settle";
+    case GaitPhase::kChoose:
+      return "choose";
+    case GaitPhase::kRegrasp:
+      return "regrasp";
+    case GaitPhase::kRecover:
+      return "recover";
+    case GaitPhase::kFinish:
+      return "finish";
+    case GaitPhase::kDone:
+      return "done";
+    case GaitPhase::kFailed:
+      return "failed";
   }
   return "";
 }
@@ -70,7 +80,8 @@ void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
     search_.Start(home_stance_, fingers_, order_.empty() ? -1 : order_.back().finger,
                   parameters.max_shift, request_.seed);
   if (ticks_ % kSearchTicks == 0)
-    search_.Step(weight, control.friction_estimate, estimate.object_scale, control.max_normal_force);
+    search_.Step(weight, control.friction_estimate, estimate.object_scale,
+                 control.max_normal_force);
   if (search_.margin() < parameters.margin_wanted && search_.evaluations() < kSearchLimit) return;
   home_stance_ = search_.stance();
   for (std::size_t i = 0; i < home_stance_.size(); ++i) home_.p_OC[i] = home_stance_[i].p_OC;
@@ -89,7 +100,8 @@ void FingerGait::Remember(int finger, const Estimate& estimate, const ObjectWren
 
 void FingerGait::StartMotion(const GaitParameters& parameters) {
   const double left = std::abs(request_.angle_rad) - turned_before_;
-  const double step = request_.continuous ? parameters.step_rad : std::min(parameters.step_rad, left);
+  const double step =
+      request_.continuous ? parameters.step_rad : std::min(parameters.step_rad, left);
   const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
   manipulation_.Start(sign_ * request_.axis_W, step, speed);
   Enter(GaitPhase::kObjectMotion);
@@ -110,18 +122,17 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
   const StanceContact& home = home_stance_[finger];
   if (parameters.mode == static_cast<double>(GaitMode::kExploring)) {
     const StanceContact found = Shifted(home, TangentPart(found_[finger], home.normal_W));
-    return {wrench.p_ref() + found.p_OC, wrench.p_ref() + found.p_OF, found.normal_W,
-            wrench.p_ref() + home.p_OC};
+    return {wrench.p_ref() + home.p_OC, wrench.p_ref() + home.p_OF, home.normal_W,
+            wrench.p_ref() + found.p_OC};
   }
   return {wrench.p_ref() + ahead * home.p_OC, wrench.p_ref() + ahead * home.p_OF,
-          ahead * home.normal_W, wrench.p_ref() + ahead * home.p_OC};
+          ahead * home.normal_W, wrench.p_ref()};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
                            double rotation) {
   happened_.error_position = (wrench.p_ref() - estimate.p_WO).norm();
-  happened_.error_rotation =
-      RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
+  happened_.error_rotation = RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
   return happened_.error_position > position || happened_.error_rotation > rotation;
 }
 
@@ -180,7 +191,8 @@ void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameter
   if (refused_finger_ >= 0) {
     std::snprintf(error_, sizeof(error_),
                   "%s may not leave: the load margin without it is %.3f N, below %.3f N",
-                  hand.fingers[refused_finger_].name.c_str(), refused_margin_, parameters.margin_min);
+                  hand.fingers[refused_finger_].name.c_str(), refused_margin_,
+                  parameters.margin_min);
   } else {
     const int finger = manipulation_.end_finger();
     std::snprintf(error_, sizeof(error_), "the object cannot turn further: %s%s%s",
@@ -225,7 +237,8 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       break;
 
     case GaitPhase::kObjectMotion:
-      motion = manipulation_.Update(hand, estimate, wrench, home_, fingers_, smooth_.all, parameters, dt);
+      motion = manipulation_.Update(hand, estimate, wrench, home_, fingers_, smooth_.all,
+                                    parameters, dt);
       if (manipulation_.end() != LocalManipulation::End::kNone) {
         EndMotion();
         const bool there =
@@ -251,8 +264,8 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       break;
 
     case GaitPhase::kRegrasp: {
-      if (!regrasp_.aborted() && Disturbed(estimate, wrench, parameters.abort_position,
-                                           parameters.abort_rotation)) {
+      if (!regrasp_.aborted() &&
+          Disturbed(estimate, wrench, parameters.abort_position, parameters.abort_rotation)) {
         regrasp_.Abort();
         happened_.aborted = true;
       }

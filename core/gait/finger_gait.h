@@ -1,7 +1,7 @@
 #pragma once
 
-/// The finger gait (Sec. III b): object motion with all fingers, then one finger after the other regrasps
-/// (gait_table.h), again and again, until the object has turned as far as wanted.
+/// The finger gait (Sec. III b): object motion with all fingers, then one finger after the other
+/// regrasps (gait_table.h), again and again, until the object has turned as far as wanted.
 
 #include "core/gait/gait_table.h"
 #include "core/gait/local_manipulation.h"
@@ -13,7 +13,7 @@ namespace regrasp {
 /// States of the gait; GaitFrame::phase.
 enum class GaitPhase : std::uint8_t {
   kIdle,
-  kStance,        ///< all fingers hold; contacts are sought from which the opposing finger may leave
+  kStance,  ///< all fingers hold; contacts are sought from which the opposing finger may leave
   kObjectMotion,  ///< all fingers hold, the object turns
   kSettle,        ///< all fingers hold
   kChoose,        ///< which finger comes next
@@ -41,10 +41,10 @@ class FingerGait {
   };
   /// What happened in the last Update.
   struct Happened {
-    bool changed = false;          ///< phase, finger or phase of the regrasp
-    int refused_finger = -1;       ///< may not leave: the margin without it is too small
-    double refused_margin = 0;     ///< [N]
-    bool aborted = false;          ///< a regrasp was broken off
+    bool changed = false;       ///< phase, finger or phase of the regrasp
+    int refused_finger = -1;    ///< may not leave: the margin without it is too small
+    double refused_margin = 0;  ///< [N]
+    bool aborted = false;       ///< a regrasp was broken off
     double error_position = 0, error_rotation = 0;  ///< object against reference, then [m, rad]
     bool regrasp_began = false, explore_began = false, explore_ended = false, regrasp_ended = false;
   };
@@ -85,8 +85,8 @@ class FingerGait {
   double manipulation_turned() const {
     return phase_ == GaitPhase::kObjectMotion ? manipulation_.turned() : 0.0;
   }
-  void SearchStance(const Estimate& estimate, const Vector3d& weight, const ControlParameters& control,
-                    const GaitParameters& parameters);
+  void SearchStance(const Estimate& estimate, const Vector3d& weight,
+                    const ControlParameters& control, const GaitParameters& parameters);
   void Remember(int finger, const Estimate& estimate, const ObjectWrench& wrench,
                 const GaitParameters& parameters);
   void StartMotion(const GaitParameters& parameters);
@@ -95,7 +95,8 @@ class FingerGait {
   void Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
             const ObjectWrench& wrench, const GaitParameters& parameters);
   void EndCycle(const HandModel& hand, const GaitParameters& parameters);
-  Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench, const GaitParameters& parameters) const;
+  Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench,
+                           const GaitParameters& parameters) const;
   bool Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
                  double rotation);
 
@@ -109,12 +110,12 @@ class FingerGait {
   LocalManipulation::Home home_;
   Stance home_stance_;  // where each finger comes back to
   StanceSearch search_;
-  // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The next
-  // exploration of the finger starts there.
+  // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The
+  // next exploration of the finger goes there from the first contact, then Algorithm 1 takes over.
   std::array<Vector3d, kMaxFingers> found_{};
   LocalManipulation manipulation_;
   Regrasp regrasp_;
-  Margins smooth_;        // margins, low-passed
+  Margins smooth_;  // margins, low-passed
   bool have_margins_ = false;
   unsigned waiting_ = 0;  // bits of the fingers that have not had their turn in this cycle
   double turned_before_ = 0, turned_in_cycle_ = 0;

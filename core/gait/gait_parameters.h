@@ -8,44 +8,48 @@ enum class GaitMode : int {
   kReturning = 1,  ///< its first contact
 };
 
-/// Constants of the local manipulation controller and the finger gait. Unit, range and source of each
-/// stand in the parameter table (core/session/parameters.cc).
+/// Constants of the local manipulation controller and the finger gait. Unit, range and source of
+/// each stand in the parameter table (core/session/parameters.cc).
 struct GaitParameters {
-  double mode = 1;                      ///< GaitMode
-  double by_need = 0;                   ///< 1: the finger farthest from its target first; 0: order of the table
-  double hop = 1;                       ///< 1: a finger hops to its target, 0: it slides
+  double mode = 1;     ///< GaitMode
+  double by_need = 0;  ///< 1: the finger farthest from its target first; 0: order of the table
+  double hop = 1;      ///< 1: a finger hops to its target, 0: it slides
   // Object motion.
-  double speed_rad_s = 0.3490658504;    ///< object speed during its motion phase (20 deg/s)
-  double acceleration = 3.0;            ///< of that speed [rad/s²]
-  double step_rad = 0.2617993878;       ///< object motion between regrasps (15 deg)
-  double settle_s = 0.10;               ///< after it, before the first finger leaves
-  double limit_margin = 0.03;           ///< the motion ends with a joint this near to its limit [rad]
-  double min_manipulability = 0.25;     ///< ... with a finger below this share of its first manipulability
-  double max_excursion = 0.016;         ///< ... with a contact this far from its first place in the palm [m]
-  double lag_position = 0.002;          ///< the reference waits while the object is this far behind [m]
-  double lag_rotation = 0.12;           ///< ... or so much [rad]
+  double speed_rad_s = 0.3490658504;  ///< object speed during its motion phase (20 deg/s)
+  double acceleration = 3.0;          ///< of that speed [rad/s²]
+  double step_rad = 0.2617993878;     ///< object motion between regrasps (15 deg)
+  double settle_s = 0.10;             ///< after it, before the first finger leaves
+  double limit_margin = 0.03;         ///< the motion ends with a joint this near to its limit [rad]
+  double min_manipulability =
+      0.25;  ///< ... with a finger below this share of its first manipulability
+  double max_excursion =
+      0.016;  ///< ... with a contact this far from its first place in the palm [m]
+  double lag_position = 0.002;  ///< the reference waits while the object is this far behind [m]
+  double lag_rotation = 0.12;   ///< ... or so much [rad]
   // When a finger may leave.
-  double margin_min = 0.10;             ///< rho_min: least load margin of the grasp without it [N]
-  double margin_wanted = 0.40;          ///< below it contacts are sought that allow more without the opposing finger [N]
-  double max_shift = 0.006;             ///< ... so far from the present ones [m]
-  double skip_distance = 0.0012;        ///< a finger this near to its target stays [m]
+  double margin_min = 0.10;  ///< rho_min: least load margin of the grasp without it [N]
+  double margin_wanted =
+      0.40;  ///< below it contacts are sought that allow more without the opposing finger [N]
+  double max_shift = 0.006;       ///< ... so far from the present ones [m]
+  double skip_distance = 0.0012;  ///< a finger this near to its target stays [m]
   // Leaving and coming back.
-  double transfer_s = 0.05;             ///< load transfer before a finger leaves, and after it is back [s]
-  double hop_force = 0.05;              ///< its force when it leaves [N]
-  double lift_height = 0.003;           ///< along the outward normal [m]
-  double lift_speed = 0.06;             ///< [m/s]
-  double across_speed = 0.08;           ///< [m/s]
-  double down_speed = 0.03;             ///< [m/s]
-  double slide_force = 0.3;             ///< normal force of a sliding finger [N]
-  double slide_gain = 8.0;              ///< sliding speed per distance [1/s]
-  double slide_speed = 0.015;           ///< highest [m/s]
-  double lead = 0.0;                    ///< target ahead of the first contact, in shares of the next step
+  double transfer_s = 0.05;    ///< load transfer before a finger leaves, and after it is back [s]
+  double hop_force = 0.05;     ///< its force when it leaves [N]
+  double lift_height = 0.003;  ///< along the outward normal [m]
+  double lift_speed = 0.06;    ///< [m/s]
+  double across_speed = 0.08;  ///< [m/s]
+  double down_speed = 0.03;    ///< [m/s]
+  double slide_force = 0.3;    ///< normal force of a sliding finger [N]
+  double slide_gain = 8.0;     ///< sliding speed per distance [1/s]
+  double slide_speed = 0.015;  ///< highest [m/s]
+  double lead = 0.0;           ///< target ahead of the first contact, in shares of the next step
   // Disturbances.
-  double abort_position = 0.003;        ///< object error at which a regrasp is broken off [m]
-  double abort_rotation = 0.2094395102; ///< (12 deg)
+  double abort_position = 0.003;         ///< object error at which a regrasp is broken off [m]
+  double abort_rotation = 0.2094395102;  ///< (12 deg)
   // Exploring.
-  double disc_radius = 0.004;           ///< contacts stay within this distance of the first one, in the palm [m]
-  double explore_s = 1.0;               ///< longest exploration per regrasp [s]
+  double disc_radius =
+      0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
+  double explore_s = 1.0;  ///< longest exploration per regrasp [s]
 };
 
 }  // namespace regrasp

@@ -13,8 +13,8 @@ namespace regrasp {
 /// What the free finger maximises while it regrasps.
 enum class GaitObjective : std::uint8_t {
   kNone,
-  kManipulability,      ///< of the free finger; stability once that is below its threshold
-  kStabilityWithoutNext ///< stability of the grasp without the next finger of the table
+  kManipulability,       ///< of the free finger; stability once that is below its threshold
+  kStabilityWithoutNext  ///< stability of the grasp without the next finger of the table
 };
 
 struct GaitRow {
@@ -26,16 +26,17 @@ struct GaitRow {
 /// One cycle of the gait, top to bottom, again and again. All other fingers hold.
 inline constexpr std::array<GaitRow, 6> kGaitTable{{
     // state          free finger   objective
-    {"object motion", "",           GaitObjective::kNone},
-    {"S_L",           "little",     GaitObjective::kManipulability},
-    {"S_R",           "ring",       GaitObjective::kManipulability},
-    {"S_M",           "middle",     GaitObjective::kManipulability},
-    {"S_F",           "first",      GaitObjective::kStabilityWithoutNext},
-    {"S_T",           "thumb",      GaitObjective::kManipulability},
+    {"object motion", "", GaitObjective::kNone},
+    {"S_L", "little", GaitObjective::kManipulability},
+    {"S_R", "ring", GaitObjective::kManipulability},
+    {"S_M", "middle", GaitObjective::kManipulability},
+    {"S_F", "first", GaitObjective::kStabilityWithoutNext},
+    {"S_T", "thumb", GaitObjective::kManipulability},
 }};
 
-/// The finger whose contact normal points most against the sum of the others': the one without which the
-/// others can hold least. -1 with fewer than two touching fingers of the set `fingers` (bits).
+/// The finger whose contact normal points most against the sum of the others': the one without
+/// which the others can hold least. -1 with fewer than two touching fingers of the set `fingers`
+/// (bits).
 int OpposingFinger(const Estimate& estimate, unsigned fingers);
 
 /// One step of a gait made for a hand.
@@ -45,9 +46,9 @@ struct GaitStep {
 };
 using GaitOrder = FixedVector<GaitStep, kMaxFingers>;
 
-/// The table for this hand: its rows whose finger the hand has, then the hand's other fingers, then the
-/// opposing finger, which is always last; the finger before it maximises stability without it. Only
-/// fingers of the set `fingers`.
+/// The table for this hand: its rows whose finger the hand has, then the hand's other fingers, then
+/// the opposing finger, which is always last; the finger before it maximises stability without it.
+/// Only fingers of the set `fingers`.
 GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, unsigned fingers);
 
 }  // namespace regrasp

@@ -12,14 +12,22 @@ constexpr double kStuck_s = 0.5;
 std::string_view Name(LocalManipulation::End end) {
   using End = LocalManipulation::End;
   switch (end) {
-    case End::kNone: return "moving";
-    case End::kReached: return "reached";
-    case End::kJointLimit: return "joint limit";
-    case End::kStuck: return "the object does not follow";
-    case End::kManipulability: return "manipulability";
-    case End::kExcursion: return "excursion";
-    case End::kMargin: return "load margin";
-    case End::kStopped: return "stopped";
+    case End::kNone:
+      return "moving";
+    case End::kReached:
+      return "reached";
+    case End::kJointLimit:
+      return "joint limit";
+    case End::kStuck:
+      return "the object does not follow";
+    case End::kManipulability:
+      return "manipulability";
+    case End::kExcursion:
+      return "excursion";
+    case End::kMargin:
+      return "load margin";
+    case End::kStopped:
+      return "stopped";
   }
   return "";
 }
@@ -66,8 +74,9 @@ LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const E
 }
 
 ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& estimate,
-                                       const ObjectWrench& wrench, const Home& home, unsigned fingers,
-                                       double margin, const GaitParameters& parameters, double dt) {
+                                       const ObjectWrench& wrench, const Home& home,
+                                       unsigned fingers, double margin,
+                                       const GaitParameters& parameters, double dt) {
   ObjectMotion motion;
   if (end_ != End::kNone) return motion;
   const double left = angle_ - turned_;

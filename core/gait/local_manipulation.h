@@ -1,7 +1,8 @@
 #pragma once
 
-/// The local manipulation controller: all fingers hold, and the object moves a little with them. It moves
-/// the reference of the object-level force control (core/control) and knows when it has reached its end.
+/// The local manipulation controller: all fingers hold, and the object moves a little with them. It
+/// moves the reference of the object-level force control (core/control) and knows when it has
+/// reached its end.
 
 #include <array>
 #include <string_view>
@@ -26,7 +27,7 @@ class LocalManipulation {
 
   /// What the fingers looked like at first; the ends are judged against it.
   struct Home {
-    std::array<Vector3d, kMaxFingers> p_OC{};          ///< contact from the object reference, in W axes [m]
+    std::array<Vector3d, kMaxFingers> p_OC{};  ///< contact from the object reference, in W axes [m]
     std::array<double, kMaxFingers> manipulability{};  ///< [kManipulabilityUnit]
   };
 
@@ -34,11 +35,11 @@ class LocalManipulation {
   void Start(const Vector3d& axis_W, double angle, double speed_rad_s);
   /// Slows down and ends with kStopped.
   void Stop() { stop_ = true; }
-  /// One tick: the motion of the object reference. `fingers`: bits of the holding fingers; `margin`: load
-  /// margin of their grasp [N]; dt [s].
+  /// One tick: the motion of the object reference. `fingers`: bits of the holding fingers;
+  /// `margin`: load margin of their grasp [N]; dt [s].
   ObjectMotion Update(const HandModel& hand, const Estimate& estimate, const ObjectWrench& wrench,
-                      const Home& home, unsigned fingers, double margin, const GaitParameters& parameters,
-                      double dt);
+                      const Home& home, unsigned fingers, double margin,
+                      const GaitParameters& parameters, double dt);
 
   End end() const { return end_; }
   int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
@@ -47,15 +48,16 @@ class LocalManipulation {
   void AddTo(StateHasher* hasher) const;
 
  private:
-  End FindEnd(const HandModel& hand, const Estimate& estimate, const Vector3d& p_ref, const Home& home,
-              unsigned fingers, double margin, const GaitParameters& parameters);
+  End FindEnd(const HandModel& hand, const Estimate& estimate, const Vector3d& p_ref,
+              const Home& home, unsigned fingers, double margin, const GaitParameters& parameters);
 
   Vector3d axis_W_ = Vector3d::UnitZ();
   double angle_ = 0, speed_max_ = 0;
   double turned_ = 0, speed_ = 0;
   bool stop_ = false;
-  unsigned at_limit_at_first_ = 0;  // bits of the fingers with a joint at its limit when the motion began
-  int waited_ = 0;                  // ticks
+  unsigned at_limit_at_first_ =
+      0;            // bits of the fingers with a joint at its limit when the motion began
+  int waited_ = 0;  // ticks
   End end_ = End::kNone;
   int end_finger_ = -1;
 };

@@ -7,31 +7,45 @@
 namespace regrasp {
 namespace {
 
-constexpr int kTouchTicks = 3;          // consecutive ticks of contact that count as landed
-constexpr double kNear = 0.0015;        // this near to above the target the finger comes down [m]
-constexpr double kLate_s = 0.15;        // it comes down anyway so long after its target got there
-constexpr double kTooDeep = 0.010;      // so far below where it left: no surface here [m]
-constexpr double kLost_s = 1.0;         // a finger that reloads without contact for so long is lost
+constexpr int kTouchTicks = 3;      // consecutive ticks of contact that count as landed
+constexpr double kNear = 0.0015;    // this near to above the target the finger comes down [m]
+constexpr double kLate_s = 0.15;    // it comes down anyway so long after its target got there
+constexpr double kTooDeep = 0.010;  // so far below where it left: no surface here [m]
+constexpr double kLost_s = 1.0;     // a finger that reloads without contact for so long is lost
 constexpr double kSlideArrived = 0.0005;  // [m]
 constexpr double kSlideLimit_s = 2.5;
+constexpr double kRecallLimit_s = 0.6;
 constexpr double kSettle_s = 0.08;
-constexpr double kDiscReturn = 1.0;     // share of the excess over the disc that counts as a wall's depth
+constexpr double kDiscReturn =
+    1.0;  // share of the excess over the disc that counts as a wall's depth
 
 }  // namespace
 
 std::string_view Name(Regrasp::Phase phase) {
   using Phase = Regrasp::Phase;
   switch (phase) {
-    case Phase::kIdle: return "idle";
-    case Phase::kUnload: return "unload";
-    case Phase::kLift: return "lift";
-    case Phase::kAcross: return "across";
-    case Phase::kDown: return "down";
-    case Phase::kSlide: return "slide";
-    case Phase::kSettle: return "settle";
-    case Phase::kExplore: return "explore";
-    case Phase::kReload: return "reload";
-    case Phase::kDone: return "done";
+    case Phase::kIdle:
+      return "idle";
+    case Phase::kUnload:
+      return "unload";
+    case Phase::kLift:
+      return "lift";
+    case Phase::kAcross:
+      return "across";
+    case Phase::kDown:
+      return "down";
+    case Phase::kSlide:
+      return "slide";
+    case Phase::kSettle:
+      return "settle";
+    case Phase::kRecall:
+      return "recall";
+    case Phase::kExplore:
+      return "explore";
+    case Phase::kReload:
+      return "reload";
+    case Phase::kDone:
+      return "done";
   }
   return "";
 }
@@ -66,9 +80,8 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
                       double dt, FingerTask* task) {
   const FingerEstimate& finger = estimate.fingers[request_.finger];
   const unsigned fingers = request_.without >= 0 ? grasp & ~(1u << request_.without) : grasp;
-  const ObjectiveValue objective =
-      Objective(request_.criterion, request_.finger, fingers, estimate, control,
-                exploration.stability_weight, on_stability_);
+  const ObjectiveValue objective = Objective(request_.criterion, request_.finger, fingers, estimate,
+                                             control, exploration.stability_weight, on_stability_);
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   task->mode = FingerMode::kSlide;
@@ -77,15 +90,25 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
 
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
   FindWalls(hand, estimate, request_.finger, exploration, &input.walls);
-  const Vector3d out = TangentPart(finger.p_WC - target.p_WD, finger.normal_W);
+  const Vector3d out = TangentPart(finger.p_WC - target.p_WC, finger.normal_W);
   const double excess = out.norm() - parameters.disc_radius;
   if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess});
 
   if (phase_ == Phase::kSettle) {
     if (ticks_ * dt < kSettle_s) return;
-    algorithm_.Start(input, Estimator::kLeastSquares, request_.seed, 0, exploration);
     explore_began_ = true;
-    Enter(Phase::kExplore);
+    Enter(Phase::kRecall);
+    return;
+  }
+  if (phase_ == Phase::kRecall && !abort_) {
+    const Vector3d error = TangentPart(target.p_WR - finger.p_WC, finger.normal_W);
+    const double distance = error.norm();
+    if (distance < kSlideArrived || ticks_ * dt > kRecallLimit_s) {
+      algorithm_.Start(input, Estimator::kLeastSquares, request_.seed, 0, exploration);
+      Enter(Phase::kExplore);
+    } else {
+      task->v_W = error * std::min(parameters.slide_gain, parameters.slide_speed / distance);
+    }
     return;
   }
   const bool lost = finger.ticks_without_contact * dt > 0.1;
@@ -169,9 +192,10 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
       task.force = parameters.slide_force;
       const Vector3d error = TangentPart(target.p_WC - finger.p_WC, finger.normal_W);
       const double distance = error.norm();
-      task.v_W = distance > 1e-9 ? Vector3d(error * std::min(parameters.slide_gain,
-                                                             parameters.slide_speed / distance))
-                                 : Vector3d(Vector3d::Zero());
+      task.v_W =
+          distance > 1e-9
+              ? Vector3d(error * std::min(parameters.slide_gain, parameters.slide_speed / distance))
+              : Vector3d(Vector3d::Zero());
       if (abort_) {
         Enter(Phase::kReload);
       } else if (distance < kSlideArrived || ticks_ * dt > kSlideLimit_s) {
@@ -181,6 +205,7 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
     }
 
     case Phase::kSettle:
+    case Phase::kRecall:
     case Phase::kExplore:
       Explore(hand, estimate, target, grasp, control, exploration, parameters, dt, &task);
       break;

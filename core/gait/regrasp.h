@@ -1,7 +1,8 @@
 #pragma once
 
-/// One finger gives up its contact and takes another one while the others hold: load transfer, the way
-/// (a hop or a slide) to its target in the palm, Algorithm 1 there if wanted, and load transfer back.
+/// One finger gives up its contact and takes another one while the others hold: load transfer, the
+/// way (a hop or a slide) to its target in the palm, Algorithm 1 there if wanted, and load transfer
+/// back.
 
 #include "core/control/hybrid_controller.h"
 #include "core/exploration/objective.h"
@@ -19,7 +20,8 @@ class Regrasp {
     kAcross,   ///< above the surface, to above the target
     kDown,     ///< until it touches
     kSlide,    ///< over the surface to the target, or
-    kSettle,   ///< presses with the exploring force until the filters follow
+    kSettle,   ///< explore: presses with the exploring force until the filters follow
+    kRecall,   ///< explore: slides to where the finger's last explorations ended
     kExplore,  ///< Algorithm 1
     kReload,   ///< its force ramps up
     kDone,
@@ -27,18 +29,19 @@ class Regrasp {
 
   struct Request {
     int finger = -1;
-    bool hop = true;      ///< otherwise it slides
+    bool hop = true;  ///< otherwise it slides
     bool explore = false;
     Criterion criterion = Criterion::kManipulability;
-    int without = -1;     ///< explore: the stability that counts is that without this finger; -1: with all
+    int without =
+        -1;  ///< explore: the stability that counts is that without this finger; -1: with all
     std::uint64_t seed = 0;
   };
   /// Where the finger shall go, in W; follows the object's reference position.
   struct Target {
-    Vector3d p_WC = Vector3d::Zero();      ///< contact [m]
-    Vector3d p_WF = Vector3d::Zero();      ///< fingertip centre [m]
-    Vector3d normal_W = Vector3d::UnitZ(); ///< outward
-    Vector3d p_WD = Vector3d::Zero();      ///< explore: centre of the disc it may not leave [m]
+    Vector3d p_WC = Vector3d::Zero();       ///< contact [m]
+    Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
+    Vector3d normal_W = Vector3d::UnitZ();  ///< outward
+    Vector3d p_WR = Vector3d::Zero();       ///< explore: where the last explorations ended [m]
   };
 
   void Start(const Request& request);
@@ -56,7 +59,7 @@ class Regrasp {
   bool aborted() const { return aborted_; }
   /// Found no surface to stand on.
   bool lost() const { return lost_; }
-  /// True in the tick in which Algorithm 1 begins, and in which it ends.
+  /// True in the tick in which the exploration begins at the target, and in which it ends.
   bool explore_began() const { return explore_began_; }
   bool explore_ended() const { return explore_ended_; }
   double phi() const { return phi_; }
@@ -67,9 +70,10 @@ class Regrasp {
  private:
   void Enter(Phase phase);
   void Reach(const Vector3d& velocity, double dt, FingerTask* task);
-  void Explore(const HandModel& hand, const Estimate& estimate, const Target& target, unsigned grasp,
-               const ControlParameters& control, const ExplorationParameters& exploration,
-               const GaitParameters& parameters, double dt, FingerTask* task);
+  void Explore(const HandModel& hand, const Estimate& estimate, const Target& target,
+               unsigned grasp, const ControlParameters& control,
+               const ExplorationParameters& exploration, const GaitParameters& parameters,
+               double dt, FingerTask* task);
 
   Request request_;
   Phase phase_ = Phase::kIdle;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Looks for contacts near the present ones from which the opposing finger may leave: what the paper's
-/// state S_F is for ("before the thumb leaves, the grasp without it is made stable").
+/// Looks for contacts near the present ones from which the opposing finger may leave: what the
+/// paper's state S_F is for ("before the thumb leaves, the grasp without it is made stable").
 
 #include "core/common/random.h"
 #include "core/control/estimate.h"
@@ -16,17 +16,18 @@ struct StanceContact {
 };
 using Stance = FixedVector<StanceContact, kMaxFingers>;
 
-/// Moves a contact over the surface by `step` (tangential, [m]). Surface model: the sphere through the
-/// contact with the contact's normal and its distance from the object's centre as radius.
+/// Moves a contact over the surface by `step` (tangential, [m]). Surface model: the sphere through
+/// the contact with the contact's normal and its distance from the object's centre as radius.
 StanceContact Shifted(const StanceContact& contact, const Vector3d& step);
 
-/// Random local search for the largest load margin of a stance without one finger. One evaluation per
-/// call of Step(): a load margin costs some 50 us, so that it is called every few ticks.
+/// Random local search for the largest load margin of a stance without one finger. One evaluation
+/// per call of Step(): a load margin costs some 50 us, so that it is called every few ticks.
 class StanceSearch {
  public:
-  /// `stance`: contacts of all fingers; `fingers`: bits of those that touch; `without`: finger that shall
-  /// leave; the others may move by at most `max_shift` [m].
-  void Start(const Stance& stance, unsigned fingers, int without, double max_shift, std::uint64_t seed);
+  /// `stance`: contacts of all fingers; `fingers`: bits of those that touch; `without`: finger that
+  /// shall leave; the others may move by at most `max_shift` [m].
+  void Start(const Stance& stance, unsigned fingers, int without, double max_shift,
+             std::uint64_t seed);
   /// One evaluation. weight [N]; torque_scale [m]; max_force [N].
   void Step(const Vector3d& weight, double mu, double torque_scale, double max_force);
   const Stance& stance() const { return best_; }

@@ -1,5 +1,5 @@
-// The finger gait in closed loop, on the session: what it promises, each on one seed. Success rates over
-// seeds are measured by `claims rotate` (bench/claims.cc), not here.
+// The finger gait in closed loop, on the session: what it promises, each on one seed. Success rates
+// over seeds are measured by `claims rotate` (bench/claims.cc), not here.
 
 #include <gtest/gtest.h>
 
@@ -57,8 +57,8 @@ TEST(Rotate, TurnsTheObjectOnceAndGoesOnHolding) {
   EXPECT_EQ(session.state(), SessionState::kRotating);
   const JobRecord job = Finish(session, 120);
   ASSERT_EQ(job.state, JobState::kDone) << job.error;
-  // The bounds for one motion (5 degrees, 4 mm); the reference is followed by an integrating
-  // controller, so that a whole turn has the same error.
+  // The bounds for one motion (5 degrees, 4 mm); the reference is followed by an
+  // integrating controller, so that a whole turn has the same error.
   EXPECT_NEAR(job.rotate.angle_rad, 2 * M_PI, 5 * kDegree);
   EXPECT_LT(job.rotate.max_position_error_m, 0.004);
   EXPECT_FALSE(job.rotate.dropped);

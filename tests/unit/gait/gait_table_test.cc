@@ -85,14 +85,16 @@ TEST(Stance, ShiftedContactStaysOnTheBall) {
   EXPECT_LT((moved.normal_W - moved.p_OC.normalized()).norm(), 1e-12);
   EXPECT_NEAR((moved.p_OF - moved.p_OC).norm(), tip, 1e-12);
   // An arc of 6 mm on 25 mm has a chord of 2 * 25 * sin(6 / 50) mm.
-  EXPECT_NEAR((moved.p_OC - contact.p_OC).norm(), 2 * radius * std::sin(0.006 / (2 * radius)), 1e-12);
+  EXPECT_NEAR((moved.p_OC - contact.p_OC).norm(), 2 * radius * std::sin(0.006 / (2 * radius)),
+              1e-12);
 }
 
 TEST(Stance, SearchRaisesTheMarginWithinItsBound) {
   Stance stance;
   // Four contacts that hardly hold the ball, and one opposing finger that is to leave.
-  for (const Vector3d& direction : {Vector3d(0.5, 0.8, 0.6), Vector3d(0.15, 0.8, -0.75),
-                                    Vector3d(-0.2, 0.75, -0.7), Vector3d(-0.75, -0.3, 0.4), Vector3d(0, -1, 0)}) {
+  for (const Vector3d& direction :
+       {Vector3d(0.5, 0.8, 0.6), Vector3d(0.15, 0.8, -0.75), Vector3d(-0.2, 0.75, -0.7),
+        Vector3d(-0.75, -0.3, 0.4), Vector3d(0, -1, 0)}) {
     const Vector3d n = direction.normalized();
     stance.push_back({0.025 * n, 0.032 * n, n});
   }
