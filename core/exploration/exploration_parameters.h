@@ -2,29 +2,31 @@
 
 namespace regrasp {
 
-/// Constants of Algorithm 1. lambda and sigma are the paper's; the paper gives no number for the others.
-/// Unit, range and source of each stand in the parameter table (core/session/parameters.cc).
+/// Constants of Algorithm 1. lambda and sigma are the paper's; the paper gives no number for the
+/// others. Unit, range and source of each stand in the parameter table
+/// (core/session/parameters.cc).
 struct ExplorationParameters {
-  double sigma = 0.15;               ///< line 2: start gradient, standard deviation per axis, times gradient_max
-  double lambda = 0.9;               ///< line 8: sliding mean
-  double epsilon = 4.0;              ///< line 3: the gradient norm that counts as converged [1/m]
-  double converged_updates = 10;     ///< line 3: for so many consecutive updates
-  double max_cycles = 8000;          ///< line 3: N_max [ticks]
-  double update_cycles = 50;         ///< line 4: n [ticks]
-  double min_displacement = 3e-4;    ///< an update waits until the contact has moved so far [m]
-  double gradient_max = 60;          ///< line 7: cap of the gradient norm [1/m]
-  double eta = 3e-4;                 ///< line 11: speed per gradient [m²/s]
-  double speed_min = 0.004;          ///< [m/s]
-  double speed_max = 0.015;          ///< [m/s]
-  double normal_force = 0.4;         ///< of the exploring finger [N]
-  double max_excursion = 0.008;      ///< from where it started [m]
-  double limit_margin = 0.04;        ///< a joint this near to its limit is a wall [rad]
-  double clearance = 0.002;          ///< a link of another finger this near is a wall [m]
-  double dither_speed = 0.005;       ///< least_squares: circular dither [m/s]
-  double dither_hz = 1.5;            ///< least_squares: its frequency
-  double forgetting = 0.85;          ///< least_squares: weight of the past per update
-  double stability_weight = 1.0;     ///< combined: weight of stability in the linear sum
-  double transfer_s = 0.25;          ///< load transfer before the finger starts to slide, and after it ends [s]
+  double sigma = 0.15;  ///< line 2: start gradient, standard deviation per axis, times gradient_max
+  double lambda = 0.9;  ///< line 8: sliding mean
+  double epsilon = 4.0;            ///< line 3: the gradient norm that counts as converged [1/m]
+  double converged_updates = 10;   ///< line 3: for so many consecutive updates
+  double max_cycles = 8000;        ///< line 3: N_max [ticks]
+  double update_cycles = 50;       ///< line 4: n [ticks]
+  double min_displacement = 3e-4;  ///< an update waits until the contact has moved so far [m]
+  double gradient_max = 60;        ///< line 7: cap of the gradient norm [1/m]
+  double eta = 3e-4;               ///< line 11: speed per gradient [m²/s]
+  double speed_min = 0.004;        ///< [m/s]
+  double speed_max = 0.015;        ///< [m/s]
+  double normal_force = 0.4;       ///< of the exploring finger [N]
+  double max_excursion = 0.008;    ///< from where it started [m]
+  double limit_margin = 0.04;      ///< a joint this near to its limit is a wall [rad]
+  double clearance = 0.002;        ///< a link of another finger this near is a wall [m]
+  double dither_speed = 0.005;     ///< least_squares: circular dither [m/s]
+  double dither_hz = 1.5;          ///< least_squares: its frequency
+  double forgetting = 0.85;        ///< least_squares: weight of the past per update
+  double stability_weight = 1.0;   ///< combined: weight of stability in the linear sum
+  double transfer_s =
+      0.25;  ///< load transfer before the finger starts to slide, and after it ends [s]
 };
 
 }  // namespace regrasp

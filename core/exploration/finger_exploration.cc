@@ -8,16 +8,18 @@ namespace regrasp {
 namespace {
 
 constexpr double kSettle_s = 0.15;
-constexpr double kRemember_s = 0.15;  // low pass on phi and position before a best point is believed
+constexpr double kRemember_s =
+    0.15;  // low pass on phi and position before a best point is believed
 constexpr double kWorthReturning = 1.005;
-constexpr double kReturnGain = 8.0;   // 1/s
+constexpr double kReturnGain = 8.0;  // 1/s
 constexpr double kReturned_m = 0.0005;
 constexpr double kReturnLimit_s = 2.5;
 constexpr double kForceShare = 0.5;
-constexpr double kLeastForce = 0.5;     // of exploration.normal_force
-constexpr double kObjectError_m = 0.002;  // the finger slows down beyond this error of the object ...
-constexpr double kObjectStop_m = 0.003;   // ... and waits beyond this one
-constexpr double kLost_s = 0.30;  // sliding without contact for so long ends the exploration
+constexpr double kLeastForce = 0.5;  // of exploration.normal_force
+constexpr double kObjectError_m =
+    0.002;  // the finger slows down beyond this error of the object ...
+constexpr double kObjectStop_m = 0.003;  // ... and waits beyond this one
+constexpr double kLost_s = 0.30;         // sliding without contact for so long ends the exploration
 
 }  // namespace
 
@@ -55,17 +57,16 @@ void FingerExploration::EndSlide(const Estimate& estimate, HybridController* con
 
 void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
                                const ControlParameters& control,
-                               const ExplorationParameters& parameters,
-                               double load_margin_without, double dt, HybridController* controller,
-                               FingerTasks* tasks) {
+                               const ExplorationParameters& parameters, double load_margin_without,
+                               double dt, HybridController* controller, FingerTasks* tasks) {
   slide_began_ = slide_ended_ = false;
   if (phase_ == Phase::kIdle || phase_ == Phase::kDone) return;
   const FingerEstimate& finger = estimate.fingers[request_.finger];
   FingerTask& task = (*tasks)[request_.finger];
   if (phase_ == Phase::kUnload && ticks_ == 0) {
     // What the finger drags on the object must stay small against what the others can carry.
-    slide_force_ = std::clamp(kForceShare * load_margin_without, kLeastForce * parameters.normal_force,
-                              parameters.normal_force);
+    slide_force_ = std::clamp(kForceShare * load_margin_without,
+                              kLeastForce * parameters.normal_force, parameters.normal_force);
   }
   const double ramp = std::min(1.0, ++ticks_ * dt / std::max(dt, parameters.transfer_s));
 
@@ -88,9 +89,8 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     return;
   }
 
-  const ObjectiveValue objective =
-      Objective(request_.criterion, request_.finger, grasp, estimate, control,
-                parameters.stability_weight, on_stability_);
+  const ObjectiveValue objective = Objective(request_.criterion, request_.finger, grasp, estimate,
+                                             control, parameters.stability_weight, on_stability_);
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   task.mode = FingerMode::kSlide;
@@ -106,8 +106,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     } else if (ticks_ * dt >= kSettle_s) {
       EnterPhase(Phase::kSlide);
       phi_initial_ = phi_final_ = phi_smooth_ = phi_best_ = phi_;
-      p_OC_smooth_ = p_OC_best_ =
-          estimate.q_WO.conjugate() * (finger.p_WC - estimate.p_WO);
+      p_OC_smooth_ = p_OC_best_ = estimate.q_WO.conjugate() * (finger.p_WC - estimate.p_WO);
       slide_began_ = true;
       algorithm_.Start(input, request_.estimator, request_.seed, request_.max_cycles, parameters);
     }
@@ -120,8 +119,8 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     return;
   }
   const double object_error = (controller->wrench().p_ref() - estimate.p_WO).norm();
-  const double patience = std::clamp(
-      (kObjectStop_m - object_error) / (kObjectStop_m - kObjectError_m), 0.0, 1.0);
+  const double patience =
+      std::clamp((kObjectStop_m - object_error) / (kObjectStop_m - kObjectError_m), 0.0, 1.0);
   if (phase_ == Phase::kReturn) {
     const Vector3d p_best_W = estimate.p_WO + estimate.q_WO * p_OC_best_;
     const Vector3d error = TangentPart(p_best_W - finger.p_WC, finger.normal_W);
@@ -129,7 +128,8 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     if (distance < kReturned_m || ticks_ * dt > kReturnLimit_s) {
       EndSlide(estimate, controller);
     } else {
-      task.v_W = patience * error * (std::min(parameters.speed_max, kReturnGain * distance) / distance);
+      task.v_W =
+          patience * error * (std::min(parameters.speed_max, kReturnGain * distance) / distance);
     }
     return;
   }

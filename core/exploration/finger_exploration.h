@@ -15,7 +15,8 @@ class FingerExploration {
     kUnload,  ///< its force ramps down to the exploring force, the others take over
     kSettle,  ///< the finger presses with the exploring force and waits for the filters
     kSlide,   ///< Algorithm 1
-    kReturn,  ///< back to the best point it met, if the last one is worse (not with the printed rule)
+    kReturn,  ///< back to the best point it met, if the last one is worse (not with the printed
+              ///< rule)
     kReload,  ///< its force ramps up again
     kDone,
   };
@@ -32,17 +33,18 @@ class FingerExploration {
   void Start(const Request& request);
   /// Ends sliding at the next tick and goes on to kReload.
   void Stop();
-  /// One tick; changes the tasks of `request.finger` only. `grasp`: bits of the fingers that form the
-  /// grasp, this one included. load_margin_without: rho of the grasp without this finger [N]; where it is
-  /// small the finger presses less than exploration.normal_force. dt [s].
-  void Update(const HandModel& hand, const Estimate& estimate, unsigned grasp, const ControlParameters& control,
-              const ExplorationParameters& parameters, double load_margin_without, double dt,
-              HybridController* controller, FingerTasks* tasks);
+  /// One tick; changes the tasks of `request.finger` only. `grasp`: bits of the fingers that form
+  /// the grasp, this one included. load_margin_without: rho of the grasp without this finger [N];
+  /// where it is small the finger presses less than exploration.normal_force. dt [s].
+  void Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
+              const ControlParameters& control, const ExplorationParameters& parameters,
+              double load_margin_without, double dt, HybridController* controller,
+              FingerTasks* tasks);
 
   const Request& request() const { return request_; }
   Phase phase() const { return phase_; }
-  /// True in the tick in which sliding begins, and in which it ends (after kReturn): the moments at which
-  /// phi is judged.
+  /// True in the tick in which sliding begins, and in which it ends (after kReturn): the moments at
+  /// which phi is judged.
   bool slide_began() const { return slide_began_; }
   bool slide_ended() const { return slide_ended_; }
   End end() const { return end_; }

@@ -11,7 +11,8 @@ Vector3d SecantEstimator::Gradient(const Vector3d& p_WC_prev, double phi_prev, c
   const Vector3d dc_C = R_WC.transpose() * (p_WC_prev - p_WC);  // line 5
   Vector3d gradient_C = Vector3d::Zero();                       // line 6
   for (int axis = 0; axis < 2; ++axis)
-    if (std::abs(dc_C[axis]) >= 0.25 * min_displacement) gradient_C[axis] = (phi_prev - phi) / dc_C[axis];
+    if (std::abs(dc_C[axis]) >= 0.25 * min_displacement)
+      gradient_C[axis] = (phi_prev - phi) / dc_C[axis];
   return gradient_C;
 }
 

@@ -11,33 +11,42 @@ constexpr double kHysteresis = 1.05;
 
 std::string_view Name(Criterion criterion) {
   switch (criterion) {
-    case Criterion::kManipulability: return "manipulability";
-    case Criterion::kStability: return "stability";
-    case Criterion::kSwitched: return "switched";
-    case Criterion::kCombined: return "combined";
+    case Criterion::kManipulability:
+      return "manipulability";
+    case Criterion::kStability:
+      return "stability";
+    case Criterion::kSwitched:
+      return "switched";
+    case Criterion::kCombined:
+      return "combined";
   }
   return "";
 }
 
-double GraspStability(const Estimate& estimate, unsigned fingers, const ControlParameters& parameters) {
+double GraspStability(const Estimate& estimate, unsigned fingers,
+                      const ControlParameters& parameters) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
   const SingularMeasures m =
       ComputeSingularMeasures({grasp.data(), grasp.size()}, estimate.object_scale);
   switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.stability_measure))) {
-    case StabilityMeasure::kSqrtDet: return m.sqrt_det;
-    case StabilityMeasure::kIsotropy: return m.isotropy;
-    default: return m.min_singular_value;
+    case StabilityMeasure::kSqrtDet:
+      return m.sqrt_det;
+    case StabilityMeasure::kIsotropy:
+      return m.isotropy;
+    default:
+      return m.min_singular_value;
   }
 }
 
-ObjectiveValue Objective(Criterion criterion, int finger, unsigned fingers, const Estimate& estimate,
-                         const ControlParameters& parameters, double stability_weight,
-                         bool was_on_stability) {
+ObjectiveValue Objective(Criterion criterion, int finger, unsigned fingers,
+                         const Estimate& estimate, const ControlParameters& parameters,
+                         double stability_weight, bool was_on_stability) {
   const double manipulability = estimate.fingers[finger].manipulability;
   if (criterion == Criterion::kManipulability) return {manipulability, false};
   const double stability = GraspStability(estimate, fingers, parameters);
   if (criterion == Criterion::kStability) return {stability, true};
-  if (criterion == Criterion::kCombined) return {manipulability + stability_weight * stability, false};
+  if (criterion == Criterion::kCombined)
+    return {manipulability + stability_weight * stability, false};
   const double threshold = parameters.stability_threshold * (was_on_stability ? kHysteresis : 1.0);
   const bool on_stability = stability < threshold;
   return {on_stability ? stability : manipulability, on_stability};

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What exploration maximises: manipulability of the exploring finger, stability of the grasp, a switch
-/// between them (Sec. II), or their linear sum (the dotted line of Fig. 2).
+/// What exploration maximises: manipulability of the exploring finger, stability of the grasp, a
+/// switch between them (Sec. II), or their linear sum (the dotted line of Fig. 2).
 
 #include <cstdint>
 #include <string_view>
@@ -11,7 +11,8 @@
 namespace regrasp {
 
 enum class Criterion : std::uint8_t { kManipulability, kStability, kSwitched, kCombined };
-std::string_view Name(Criterion criterion);  ///< "manipulability", "stability", "switched", "combined"
+std::string_view Name(
+    Criterion criterion);  ///< "manipulability", "stability", "switched", "combined"
 
 struct ObjectiveValue {
   double phi = 0;             ///< of order 1
@@ -19,14 +20,15 @@ struct ObjectiveValue {
 };
 
 /// Stability of the grasp by the fingers whose bit is set in `fingers`: the measure selected by
-/// `parameters.stability_measure` from sensed contacts, torques divided by the estimated object scale.
-/// (kEpsilon is too slow for every tick: it falls back to the smallest singular value here.)
-double GraspStability(const Estimate& estimate, unsigned fingers, const ControlParameters& parameters);
+/// `parameters.stability_measure` from sensed contacts, torques divided by the estimated object
+/// scale. (kEpsilon is too slow for every tick: it falls back to the smallest singular value here.)
+double GraspStability(const Estimate& estimate, unsigned fingers,
+                      const ControlParameters& parameters);
 
-/// phi of `finger`, in the grasp by `fingers` (which includes it). `was_on_stability`: result of the
-/// previous call; kSwitched returns to manipulability only 5 % above the threshold.
-ObjectiveValue Objective(Criterion criterion, int finger, unsigned fingers, const Estimate& estimate,
-                         const ControlParameters& parameters, double stability_weight,
-                         bool was_on_stability);
+/// phi of `finger`, in the grasp by `fingers` (which includes it). `was_on_stability`: result of
+/// the previous call; kSwitched returns to manipulability only 5 % above the threshold.
+ObjectiveValue Objective(Criterion criterion, int finger, unsigned fingers,
+                         const Estimate& estimate, const ControlParameters& parameters,
+                         double stability_weight, bool was_on_stability);
 
 }  // namespace regrasp

@@ -61,12 +61,12 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   if (cycle_ % n == 0 && moved >= parameters.min_displacement) {  // line 4
     Vector3d gradient_C =
         least_squares ? least_squares_.Gradient(R_WC, kRidge)
-                      : SecantEstimator::Gradient(p_WC_prev_, phi_prev_, input.p_WC, input.phi, R_WC,
-                                                  parameters.min_displacement);
-    gradient_C = LimitNorm(gradient_C, parameters.gradient_max);                      // line 7
+                      : SecantEstimator::Gradient(p_WC_prev_, phi_prev_, input.p_WC, input.phi,
+                                                  R_WC, parameters.min_displacement);
+    gradient_C = LimitNorm(gradient_C, parameters.gradient_max);  // line 7
     gradient_W_ = parameters.lambda * gradient_W_ +
-                  (1.0 - parameters.lambda) * (R_WC * gradient_C);                    // line 8
-    p_WC_prev_ = input.p_WC;                                                          // line 9
+                  (1.0 - parameters.lambda) * (R_WC * gradient_C);  // line 8
+    p_WC_prev_ = input.p_WC;                                        // line 9
     phi_prev_ = input.phi;
     ++updates_;
     gradient_norm_ = FreeGradient(input, parameters).norm();
@@ -78,15 +78,17 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   const double norm = tangent.norm();
   velocity_W_.setZero();
   if (norm > 1e-9) {  // line 11
-    const double speed = std::clamp(parameters.eta * norm, parameters.speed_min, parameters.speed_max);
+    const double speed =
+        std::clamp(parameters.eta * norm, parameters.speed_min, parameters.speed_max);
     velocity_W_ = tangent * (speed / norm);
   }
   for (const Wall& wall : input.walls)
-    velocity_W_ -= std::min(parameters.speed_max, kWallReturn * wall.depth) * wall.direction_W;
+    velocity_W_ -=
+        std::min(0.5 * parameters.speed_min, kWallReturn * wall.depth) * wall.direction_W;
   if (least_squares) {
     const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;
-    velocity_W_ += parameters.dither_speed *
-                   (std::cos(phase) * R_WC.col(0) + std::sin(phase) * R_WC.col(1));
+    velocity_W_ +=
+        parameters.dither_speed * (std::cos(phase) * R_WC.col(0) + std::sin(phase) * R_WC.col(1));
   }
   return Status::kRunning;
 }

@@ -14,14 +14,17 @@
 ///   11    commanded contact displacement = eta R_WC P R_WCᵀ gradient, to the hybrid controller
 ///
 /// Departures from the print, each with its reason:
-///  - line 2: the start is tangential, sigma scaled by gradient_max so that it is of phi's own magnitude.
-///  - line 3: the test must hold for `converged_updates` consecutive updates; an instantaneous one ends
+///  - line 2: the start is tangential, sigma scaled by gradient_max so that it is of phi's own
+///  magnitude.
+///  - line 3: the test must hold for `converged_updates` consecutive updates; an instantaneous one
+///  ends
 ///    runs whose estimate merely crosses zero.
 ///  - line 4: an update also waits until the contact has moved by `min_displacement`.
 ///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
-///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit and at
-///    another finger (walls) the part of the gradient that points on is removed, from the motion and from
-///    the test: a constrained maximum counts as converged.
+///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit
+///  and at
+///    another finger (walls) the part of the gradient that points on is removed, from the motion
+///    and from the test: a constrained maximum counts as converged.
 ///  - line 11: the displacement is per second, limited to [speed_min, speed_max].
 /// The class knows nothing of the hand: it turns contact points and values of phi into velocities.
 
@@ -45,10 +48,10 @@ class SurfaceExploration {
 
   /// What line 5 to 11 need, every tick.
   struct Input {
-    Vector3d p_WC = Vector3d::Zero();        ///< sensed contact point [m]
-    Vector3d normal_W = Vector3d::UnitZ();   ///< sensed outward object normal
-    double phi = 0;                          ///< objective, of order 1
-    FixedVector<Wall, 8> walls;              ///< joint limits, other fingers
+    Vector3d p_WC = Vector3d::Zero();       ///< sensed contact point [m]
+    Vector3d normal_W = Vector3d::UnitZ();  ///< sensed outward object normal
+    double phi = 0;                         ///< objective, of order 1
+    FixedVector<Wall, 8> walls;             ///< joint limits, other fingers
   };
 
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.
@@ -76,7 +79,7 @@ class SurfaceExploration {
   int cycle_ = 0;
   int max_cycles_ = 0;
   int updates_ = 0;
-  int small_updates_ = 0;   // consecutive, with the gradient below epsilon
+  int small_updates_ = 0;  // consecutive, with the gradient below epsilon
   Vector3d p_WC_start_ = Vector3d::Zero(), p_WC_prev_ = Vector3d::Zero();
   double phi_prev_ = 0;
   Vector3d gradient_W_ = Vector3d::Zero();

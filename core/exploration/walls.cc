@@ -5,6 +5,8 @@
 namespace regrasp {
 namespace {
 
+constexpr double kLeastFacing = -0.05;
+
 /// A link's first capsule in W.
 struct Capsule {
   Vector3d a, b;
@@ -74,7 +76,26 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
     if (below > 0) AddWall(-row, below / row.norm(), f.normal_W, walls);
   }
   Capsule own, other;
-  const auto Before = [&](int link) { return hand.joints[hand.links[link].parent_joint].parent_link; };
+  if (CapsuleOf(hand, estimate, model.tip_link, &own) && (own.b - own.a).norm() > 1e-6) {
+    // The contact must stay on the round end: on the side of the link it no longer follows the tip.
+    // facing = d . n is negative there (d: along the link, n: outward normal); its rate of change
+    // with the contact velocity v is (w x d) . n + d . v / (R + r), with w the link's angular
+    // velocity.
+    const Vector3d d = (own.b - own.a).normalized();
+    const Vector3d& n = f.normal_W;
+    const double facing = d.dot(n);
+    if (facing > kLeastFacing) {
+      Vector3d rate = d / (estimate.object_scale + own.radius);
+      for (std::size_t k = 0; k < model.joints.size(); ++k) {
+        const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));
+        rate += estimate.kinematics.axis_W[model.joints[k]].cross(d).dot(n) * row;
+      }
+      AddWall(rate, (facing - kLeastFacing) / rate.norm(), n, walls);
+    }
+  }
+  const auto Before = [&](int link) {
+    return hand.joints[hand.links[link].parent_joint].parent_link;
+  };
   for (int own_link : {model.tip_link, Before(model.tip_link)}) {
     if (!CapsuleOf(hand, estimate, own_link, &own)) continue;
     for (int i = 0; i < hand.num_fingers(); ++i) {
@@ -84,7 +105,9 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
         if (!CapsuleOf(hand, estimate, link, &other)) continue;
         const Vector3d between = BetweenSegments(own, other);
         const double depth = own.radius + other.radius + parameters.clearance - between.norm();
-        if (depth > 0) AddWall(between, depth, f.normal_W, walls);
+        // Moving the tip hardly frees the link before it: that one is only kept from going on.
+        if (depth > 0)
+          AddWall(between, own_link == model.tip_link ? depth : 0.0, f.normal_W, walls);
       }
     }
   }

@@ -59,6 +59,7 @@ struct ExplorationFrame {
   double gradient_norm = 0;        ///< |P R_WCᵀ grad phi| [1/m]
   double epsilon = 0;              ///< its threshold [1/m]
   Vector3d gradient_W = Vector3d::Zero();
+  Vector3d velocity_W = Vector3d::Zero();  ///< wanted velocity of the contact, line 11 [m/s]
 };
 
 /// Finger gait, while rotating.

@@ -773,6 +773,7 @@ struct Session::Impl {
       x.gradient_norm = exploration.algorithm().gradient_norm();
       x.epsilon = parameters.exploration.epsilon;
       x.gradient_W = exploration.algorithm().gradient_W();
+      x.velocity_W = exploration.algorithm().velocity_W();
     }
     if (state == SessionState::kRotating && gait.regrasp().phase() == Regrasp::Phase::kExplore) {
       ExplorationFrame& x = f.exploration;
