@@ -32,12 +32,15 @@ const FixedVector<Vector3d, kMaxFingers>& ContactForceQp::Solve(const ForceProbl
   for (std::size_t i = 0; i < n; ++i) {
     const ForceContact& c = problem.contacts[i];
     lipschitz += c.r.squaredNorm() * inv_R2;
-    const Vector3d start = has_warm_[c.finger] ? warm_[c.finger] : Vector3d(c.grip * c.inward_normal);
-    x[i] = y[i] = ProjectOntoTruncatedCone(start, c.inward_normal, problem.mu, problem.lower, c.cap);
+    const Vector3d start =
+        has_warm_[c.finger] ? warm_[c.finger] : Vector3d(c.grip * c.inward_normal);
+    x[i] = y[i] =
+        ProjectOntoTruncatedCone(start, c.inward_normal, problem.mu, problem.lower, c.cap);
   }
   const double step = 1.0 / lipschitz;
   double momentum = 1.0;
-  auto Residuals = [&](const std::array<Vector3d, kMaxFingers>& f, Vector3d* force, Vector3d* torque) {
+  auto Residuals = [&](const std::array<Vector3d, kMaxFingers>& f, Vector3d* force,
+                       Vector3d* torque) {
     *force = -problem.force;
     *torque = -problem.torque;
     for (std::size_t i = 0; i < n; ++i) {

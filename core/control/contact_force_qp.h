@@ -6,7 +6,8 @@
 ///   subject   f_i in the round friction cone about the inward normal n_i (coefficient mu),
 ///   to        lower <= f_i . n_i <= cap_i
 ///
-/// Solved by warm-started FISTA [Beck, Teboulle 2009] with the exact projection onto each truncated cone.
+/// Solved by warm-started FISTA [Beck, Teboulle 2009] with the exact projection onto each truncated
+/// cone.
 
 #include <array>
 
@@ -18,11 +19,11 @@
 namespace regrasp {
 
 struct ForceContact {
-  int finger = -1;                            ///< keeps the warm start across calls
-  Vector3d r = Vector3d::Zero();              ///< contact point from the object's centre [m]
+  int finger = -1;                ///< keeps the warm start across calls
+  Vector3d r = Vector3d::Zero();  ///< contact point from the object's centre [m]
   Vector3d inward_normal = Vector3d::UnitZ();
-  double cap = 4.0;                           ///< upper bound of the normal force [N]
-  double grip = 1.0;                          ///< preferred normal force g_i [N]
+  double cap = 4.0;   ///< upper bound of the normal force [N]
+  double grip = 1.0;  ///< preferred normal force g_i [N]
 };
 
 struct ForceProblem {
@@ -32,7 +33,7 @@ struct ForceProblem {
   double torque_scale = 0.02;          ///< R [m], > 0
   double grip_weight = 0.02;           ///< w
   double mu = 0.5;
-  double lower = 0.1;                  ///< [N]
+  double lower = 0.1;  ///< [N]
 };
 
 /// Projection of `f` onto { |t| <= mu n, lower <= n <= cap }, n along `axis` (unit).

@@ -4,17 +4,23 @@ namespace regrasp {
 
 /// Which stability measure `switched`, `stability` and `combined` use (values of
 /// control.stability_measure).
-enum class StabilityMeasure : int { kMinSingularValue = 0, kEpsilon = 1, kSqrtDet = 2, kIsotropy = 3 };
+enum class StabilityMeasure : int {
+  kMinSingularValue = 0,
+  kEpsilon = 1,
+  kSqrtDet = 2,
+  kIsotropy = 3
+};
 
-/// Constants of the sensing filters, the object-level force control and the joint control. Unit, range
-/// and source of each stand in the parameter table (core/session/parameters.cc).
+/// Constants of the sensing filters, the object-level force control and the joint control. Unit,
+/// range and source of each stand in the parameter table (core/session/parameters.cc).
 struct ControlParameters {
   // Filters: time constants of first-order low passes [s].
   double joint_filter_s = 0.010;
   double force_filter_s = 0.010;
   double contact_filter_s = 0.030;
   double pose_filter_s = 0.050;
-  double contact_from_normal = 1;       ///< 1: contact point from the sensed normal and the fingertip's known shape
+  double contact_from_normal =
+      1;  ///< 1: contact point from the sensed normal and the fingertip's known shape
   // Object wrench: PI law on the object pose.
   double position_stiffness = 200;      ///< [N/m]
   double position_integral = 300;       ///< [N/(m s)]
@@ -24,39 +30,42 @@ struct ControlParameters {
   double rotation_integral = 0.2;       ///< [N m/(rad s)]
   double rotation_error_limit = 0.2;    ///< [rad]
   double torque_integral_limit = 0.03;  ///< per axis [N m]
-  double mass_estimate = 0.08;          ///< assumed mass of the object before the integral has learnt it [kg]
+  double mass_estimate =
+      0.08;  ///< assumed mass of the object before the integral has learnt it [kg]
   // Contact forces (QP).
-  double grip_force = 1.0;              ///< preferred normal force of a holding finger [N]
-  double grip_weight = 0.02;            ///< weight of that preference
-  double friction_estimate = 0.5;       ///< friction coefficient the controller counts on
-  double min_normal_force = 0.1;        ///< [N]
-  double max_normal_force = 4.0;        ///< [N]
-  double residual_limit = 0.1;          ///< the integrals stop while the QP misses the wrench by more [N]
+  double grip_force = 1.0;         ///< preferred normal force of a holding finger [N]
+  double grip_weight = 0.02;       ///< weight of that preference
+  double friction_estimate = 0.5;  ///< friction coefficient the controller counts on
+  double min_normal_force = 0.1;   ///< [N]
+  double max_normal_force = 4.0;   ///< [N]
+  double residual_limit = 0.1;  ///< the integrals stop while the QP misses the wrench by more [N]
   // Joints.
-  double posture_stiffness = 0.1;       ///< in the null space of the contact force [N m/rad]
-  double pinv_damping = 0.004;          ///< lambda of the damped pseudo-inverse [m]
-  double limit_margin = 0.10;           ///< the limit spring begins this far from a joint limit [rad]
-  double limit_stiffness = 1.0;         ///< [N m/rad]
-  double free_stiffness = 1.0;          ///< joint stiffness of a finger that touches nothing [N m/rad]
+  double posture_stiffness = 0.1;  ///< in the null space of the contact force [N m/rad]
+  double pinv_damping = 0.004;     ///< lambda of the damped pseudo-inverse [m]
+  double limit_margin = 0.10;      ///< the limit spring begins this far from a joint limit [rad]
+  double limit_stiffness = 1.0;    ///< [N m/rad]
+  double free_stiffness = 1.0;     ///< joint stiffness of a finger that touches nothing [N m/rad]
   // Contact keeping.
-  double reapproach_delay_s = 0.020;    ///< a holding finger without contact for so long moves in again
-  double reapproach_speed = 0.020;      ///< [m/s]
-  double reapproach_force = 0.15;       ///< [N]
+  double reapproach_delay_s =
+      0.020;                        ///< a holding finger without contact for so long moves in again
+  double reapproach_speed = 0.020;  ///< [m/s]
+  double reapproach_force = 0.15;   ///< [N]
   // Sliding finger: hybrid position/force control.
-  double slide_stiffness = 300;         ///< tangential [N/m]
-  double slide_force_limit = 0.8;       ///< largest tangential force [N]
-  double slide_friction_share = 0.6;    ///< share of the sliding finger's normal force assumed to drag on the object
-  double normal_force_integral = 2.0;   ///< [1/s]
+  double slide_stiffness = 300;    ///< tangential [N/m]
+  double slide_force_limit = 0.8;  ///< largest tangential force [N]
+  double slide_friction_share =
+      0.6;  ///< share of the sliding finger's normal force assumed to drag on the object
+  double normal_force_integral = 2.0;  ///< [1/s]
   // Grasping.
-  double close_speed = 0.6;             ///< joints on their way from preshape to closed [rad/s]
-  double close_force = 0.15;            ///< a finger that has touched waits with this force [N]
-  double grip_ramp_s = 0.3;             ///< from waiting force to grip
-  double stand_in_release_s = 0.5;      ///< after the ramp the stand-in lets go
-  double settle_s = 0.7;                ///< then so long until `holding`
+  double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]
+  double close_force = 0.15;        ///< a finger that has touched waits with this force [N]
+  double grip_ramp_s = 0.3;         ///< from waiting force to grip
+  double stand_in_release_s = 0.5;  ///< after the ramp the stand-in lets go
+  double settle_s = 0.7;            ///< then so long until `holding`
   // Stability.
-  double stability_measure = 0;         ///< StabilityMeasure
-  double stability_threshold = 0.30;    ///< `switched`: below it stability is maximised
-  double drop_distance = 0.030;         ///< object this far from its reference: dropped [m]
+  double stability_measure = 0;       ///< StabilityMeasure
+  double stability_threshold = 0.30;  ///< `switched`: below it stability is maximised
+  double drop_distance = 0.030;       ///< object this far from its reference: dropped [m]
 };
 
 }  // namespace regrasp

@@ -11,8 +11,8 @@ namespace {
 double Gain(double dt, double time_constant) { return dt / (time_constant + dt); }
 
 /// The point of the fingertip's surface whose outward direction is -n_L, next to p_L: the tip is a
-/// capsule of known size, and 2 degrees of normal noise move the point far less than 1 mm of position
-/// noise. Links without a capsule keep p_L.
+/// capsule of known size, and 2 degrees of normal noise move the point far less than 1 mm of
+/// position noise. Links without a capsule keep p_L.
 Vector3d OnFingertip(const Link& tip, const Vector3d& p_L, const Vector3d& n_L) {
   for (const Shape& shape : tip.shapes) {
     if (shape.kind != Shape::Kind::kCapsule) continue;
@@ -27,7 +27,7 @@ Vector3d OnFingertip(const Link& tip, const Vector3d& p_L, const Vector3d& n_L) 
 }  // namespace
 
 const Estimate& StateEstimator::Update(const SensorReading& reading,
-                                  const ControlParameters& parameters) {
+                                       const ControlParameters& parameters) {
   Estimate& e = estimate_;
   if (!started_) {
     e.q = reading.q;
@@ -40,7 +40,8 @@ const Estimate& StateEstimator::Update(const SensorReading& reading,
   ForwardKinematics(*hand_, e.q, &e.kinematics);
   const double pose_gain = Gain(dt_, parameters.pose_filter_s);
   e.p_WO += pose_gain * (reading.p_WO - e.p_WO);
-  e.q_WO = FromRotationVector(pose_gain * RotationVector(reading.q_WO * e.q_WO.conjugate())) * e.q_WO;
+  e.q_WO =
+      FromRotationVector(pose_gain * RotationVector(reading.q_WO * e.q_WO.conjugate())) * e.q_WO;
   e.q_WO.normalize();
 
   const double contact_gain = Gain(dt_, parameters.contact_filter_s);

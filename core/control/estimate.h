@@ -1,6 +1,7 @@
 #pragma once
 
-/// The controller's picture of the world: filtered sensor readings and what kinematics makes of them.
+/// The controller's picture of the world: filtered sensor readings and what kinematics makes of
+/// them.
 
 #include <array>
 
@@ -13,25 +14,26 @@
 namespace regrasp {
 
 struct FingerEstimate {
-  bool in_contact = false;                ///< this tick's reading
-  bool ever_in_contact = false;           ///< p_WC and normal_W hold something
+  bool in_contact = false;       ///< this tick's reading
+  bool ever_in_contact = false;  ///< p_WC and normal_W hold something
   int ticks_without_contact = 0;
   int ticks_in_contact = 0;
-  Vector3d p_WC = Vector3d::Zero();       ///< filtered contact point; the last one while out of contact [m]
+  Vector3d p_WC =
+      Vector3d::Zero();  ///< filtered contact point; the last one while out of contact [m]
   Vector3d normal_W = Vector3d::UnitZ();  ///< filtered outward object normal
   double force = 0;                       ///< filtered normal force [N]
-  FingerJacobian J;                       ///< at p_WC, or at the fingertip centre if never in contact
-  Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
-  double manipulability = 0;              ///< at p_WC [kManipulabilityUnit]
+  FingerJacobian J;                  ///< at p_WC, or at the fingertip centre if never in contact
+  Vector3d p_WF = Vector3d::Zero();  ///< fingertip centre [m]
+  double manipulability = 0;         ///< at p_WC [kManipulabilityUnit]
 };
 
 struct Estimate {
-  JointVector q;                          ///< [rad]
+  JointVector q;  ///< [rad]
   KinematicsData kinematics;
   FixedVector<FingerEstimate, kMaxFingers> fingers;
-  Vector3d p_WO = Vector3d::Zero();       ///< [m]
+  Vector3d p_WO = Vector3d::Zero();  ///< [m]
   Quaterniond q_WO = Quaterniond::Identity();
-  double object_scale = 0.02;             ///< mean distance of the contacts from p_WO: the torque scale [m]
+  double object_scale = 0.02;  ///< mean distance of the contacts from p_WO: the torque scale [m]
 };
 
 /// First-order low passes over the sensor readings. Contact points are filtered in the frame of the
@@ -56,8 +58,8 @@ class StateEstimator {
   Estimate estimate_;
 };
 
-/// The contacts of the fingers whose bit is set in `fingers`, positions relative to the estimated object
-/// centre, friction coefficient `mu`. Fingers that never touched are left out.
+/// The contacts of the fingers whose bit is set in `fingers`, positions relative to the estimated
+/// object centre, friction coefficient `mu`. Fingers that never touched are left out.
 Grasp GraspOf(const Estimate& estimate, unsigned fingers, double mu);
 
 }  // namespace regrasp

@@ -5,8 +5,10 @@
 namespace regrasp {
 namespace {
 
-constexpr int kTouchTicks = 5;       // consecutive ticks of contact that count as a touch
-constexpr double kReachSlack_s = 0.5;  // after the closed posture is reached, wait so long for contacts
+constexpr int kTouchTicks = 5;  // consecutive ticks of contact that count as a touch
+constexpr double kSearch_s =
+    2.0;  // after the closed posture is reached, search so long for contact ...
+constexpr double kSearchSpeed = 0.02;  // ... moving the fingertip towards the object [m/s]
 
 }  // namespace
 
@@ -41,6 +43,14 @@ void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed
         task.force = parameters.close_force;
         continue;
       }
+      if (s >= 1.0) {
+        const Vector3d way = estimate.p_WO - f.p_WF;
+        if (task.mode != FingerMode::kReach) task.p_target_W = f.p_WF;
+        task.mode = FingerMode::kReach;
+        task.v_target_W = kSearchSpeed * way.normalized();
+        task.p_target_W += task.v_target_W * dt_;
+        continue;
+      }
       task.mode = FingerMode::kPosture;
       const std::vector<int>& joints = hand_->fingers[i].joints;
       task.q_target.resize(static_cast<Eigen::Index>(joints.size()));
@@ -49,7 +59,7 @@ void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed
     }
     progress_ = 0.6 * s;
     const bool all = touched == num_fingers;
-    const bool late = time > duration + kReachSlack_s;
+    const bool late = time > duration + kSearch_s;
     if (all || (late && touched >= 3)) {
       phase_ = Phase::kGrip;
       ticks_ = 0;
@@ -61,18 +71,22 @@ void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed
   }
 
   const bool gripping = phase_ == Phase::kGrip;
-  const double ramp =
-      gripping ? std::min(1.0, time / parameters.grip_ramp_s) : 1.0;
+  const double ramp = gripping ? std::min(1.0, time / parameters.grip_ramp_s) : 1.0;
   for (int i = 0; i < num_fingers; ++i) {
     FingerTask& task = (*tasks)[i];
-    if (!touched_[i]) continue;  // stays in its closed posture
+    if (!touched_[i]) {  // stays where its search ended
+      task.v_target_W.setZero();
+      continue;
+    }
     task.mode = FingerMode::kHold;
     task.grip = parameters.close_force + ramp * (parameters.grip_force - parameters.close_force);
-    task.cap = parameters.close_force + ramp * (parameters.max_normal_force - parameters.close_force);
+    task.cap =
+        parameters.close_force + ramp * (parameters.max_normal_force - parameters.close_force);
   }
   if (gripping) {
     progress_ = 0.6 + 0.2 * ramp;
-    // The stand-in holds the object: restarting keeps the integrals and the reference from winding up.
+    // The stand-in holds the object: restarting keeps the integrals and the reference from winding
+    // up.
     controller->wrench().Start(estimate, gravity_W, parameters);
     if (time > parameters.grip_ramp_s + parameters.stand_in_release_s) {
       phase_ = Phase::kAlone;

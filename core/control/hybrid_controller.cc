@@ -1,8 +1,7 @@
 #include "core/control/hybrid_controller.h"
 
-#include <algorithm>
-
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace regrasp {
 namespace {
@@ -49,12 +48,14 @@ Vector3d HybridController::SlideForce(const FingerEstimate& finger, const Finger
   state->p_ref_W = finger.p_WF + error;  // forgets the normal part, and what is out of reach
   if (finger.in_contact) {
     state->normal_integral += parameters.normal_force_integral * dt_ * (task.force - finger.force);
-    state->normal_integral = std::clamp(state->normal_integral, -0.5 * task.force, 0.5 * task.force);
+    state->normal_integral =
+        std::clamp(state->normal_integral, -0.5 * task.force, 0.5 * task.force);
   }
   const double normal_force = task.force + state->normal_integral;
   // Friction is overcome by feedforward; the spring about the reference only corrects.
   const Vector3d v = TangentPart(task.v_W, finger.normal_W);
-  const Vector3d friction = parameters.slide_friction_share * task.force * v / (v.norm() + kSlowSlide);
+  const Vector3d friction =
+      parameters.slide_friction_share * task.force * v / (v.norm() + kSlowSlide);
   return friction + parameters.slide_stiffness * error - normal_force * finger.normal_W;
 }
 
@@ -108,8 +109,8 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
           const Vector3d tangential = TangentPart(commanded_[i], f.normal_W);
           const double drag = parameters.slide_friction_share * task.force;
           const double t = tangential.norm();
-          const Vector3d on_object =
-              -task.force * f.normal_W + (t > drag ? Vector3d(tangential * (drag / t)) : tangential);
+          const Vector3d on_object = -task.force * f.normal_W +
+                                     (t > drag ? Vector3d(tangential * (drag / t)) : tangential);
           carried_force += on_object;
           carried_torque += r.cross(on_object);
         }
@@ -136,7 +137,8 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
     problem_.mu = parameters.friction_estimate;
     problem_.lower = parameters.min_normal_force;
     const auto& forces = qp_.Solve(problem_);
-    for (std::size_t k = 0; k < forces.size(); ++k) commanded_[problem_.contacts[k].finger] = forces[k];
+    for (std::size_t k = 0; k < forces.size(); ++k)
+      commanded_[problem_.contacts[k].finger] = forces[k];
   }
 
   for (int i = 0; i < num_fingers; ++i) {

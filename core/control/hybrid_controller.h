@@ -1,16 +1,17 @@
 #pragma once
 
-/// The hybrid position/force controller: turns one task per finger and the wanted object wrench into
-/// joint torques.
+/// The hybrid position/force controller: turns one task per finger and the wanted object wrench
+/// into joint torques.
 ///
 ///   holding fingers    contact forces f from the friction-cone QP, tau = Jᵀ f
-///   sliding finger     force along its normal, motion in its tangent plane (Sec. II: "the command to
+///   sliding finger     force along its normal, motion in its tangent plane (Sec. II: "the command
+///   to
 ///                      the hybrid controller")
 ///   reaching finger    fingertip position control without contact
 ///   posture            joint position control
 ///
-/// To each: gravity compensation, a posture spring and a spring away from joint limits, both in the null
-/// space of the contact force, and d * qdot_ref against the joints' own damping d, with
+/// To each: gravity compensation, a posture spring and a spring away from joint limits, both in the
+/// null space of the contact force, and d * qdot_ref against the joints' own damping d, with
 /// qdot_ref = J⁺ v of the wanted contact velocity v.
 
 #include <array>
@@ -32,13 +33,13 @@ enum class FingerMode : std::uint8_t {
 
 struct FingerTask {
   FingerMode mode = FingerMode::kPosture;
-  FingerVector q_target;                     ///< kPosture [rad]; its finger's joints, root to tip
-  double force = 0.15;                       ///< kTouch, kSlide [N]
-  double cap = 4.0;                          ///< kHold [N]
-  double grip = 1.0;                         ///< kHold: preferred normal force [N]
-  Vector3d v_W = Vector3d::Zero();           ///< kSlide: of the contact over the surface [m/s]
-  Vector3d p_target_W = Vector3d::Zero();    ///< kReach [m]
-  Vector3d v_target_W = Vector3d::Zero();    ///< kReach: velocity of the target [m/s]
+  FingerVector q_target;                   ///< kPosture [rad]; its finger's joints, root to tip
+  double force = 0.15;                     ///< kTouch, kSlide [N]
+  double cap = 4.0;                        ///< kHold [N]
+  double grip = 1.0;                       ///< kHold: preferred normal force [N]
+  Vector3d v_W = Vector3d::Zero();         ///< kSlide: of the contact over the surface [m/s]
+  Vector3d p_target_W = Vector3d::Zero();  ///< kReach [m]
+  Vector3d v_target_W = Vector3d::Zero();  ///< kReach: velocity of the target [m/s]
 };
 
 /// One task per finger.
@@ -54,7 +55,8 @@ class HybridController {
  public:
   HybridController(const HandModel& hand, double dt);
 
-  /// Starts holding the object where it is estimated to be; the posture springs rest where the joints are.
+  /// Starts holding the object where it is estimated to be; the posture springs rest where the
+  /// joints are.
   void StartHolding(const Estimate& estimate, const Vector3d& gravity_W,
                     const ControlParameters& parameters);
   /// The joints' resting posture becomes the present one for this finger.
@@ -79,8 +81,9 @@ class HybridController {
     double normal_integral = 0;           // kSlide [N]
   };
   /// Tip force on the object for a sliding finger; updates its reference.
-  Vector3d SlideForce(const FingerEstimate& finger, const FingerTask& task, const Vector3d& v_surface,
-                      const ControlParameters& parameters, FingerState* state);
+  Vector3d SlideForce(const FingerEstimate& finger, const FingerTask& task,
+                      const Vector3d& v_surface, const ControlParameters& parameters,
+                      FingerState* state);
 
   const HandModel* hand_;
   double dt_;

@@ -15,7 +15,8 @@ namespace regrasp {
 class ObjectWrench {
  public:
   /// Holds the object where it is estimated to be, from a fresh integral.
-  void Start(const Estimate& estimate, const Vector3d& gravity_W, const ControlParameters& parameters);
+  void Start(const Estimate& estimate, const Vector3d& gravity_W,
+             const ControlParameters& parameters);
   /// New reference, integrals kept.
   void SetReference(const Vector3d& p_WO, const Quaterniond& q_WO) {
     p_ref_ = p_WO;
@@ -24,7 +25,8 @@ class ObjectWrench {
   /// Moves the reference with a velocity [m/s] and angular velocity [rad/s] in W for dt [s].
   void Move(const Vector3d& v_W, const Vector3d& w_W, double dt);
   /// One tick. `freeze` stops the integrals (the QP cannot deliver the wrench).
-  void Update(const Estimate& estimate, const ControlParameters& parameters, double dt, bool freeze);
+  void Update(const Estimate& estimate, const ControlParameters& parameters, double dt,
+              bool freeze);
 
   const Vector3d& force() const { return force_; }    ///< [N]
   const Vector3d& torque() const { return torque_; }  ///< [N m]

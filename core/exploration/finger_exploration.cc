@@ -11,6 +11,8 @@ constexpr double kSettle_s = 0.15;
 constexpr double kRemember_s =
     0.15;  // low pass on phi and position before a best point is believed
 constexpr double kWorthReturning = 1.005;
+constexpr double kLittleGain = 1.02;
+constexpr int kMaxTries = 3;
 constexpr double kReturnGain = 8.0;  // 1/s
 constexpr double kReturned_m = 0.0005;
 constexpr double kReturnLimit_s = 2.5;
@@ -20,6 +22,10 @@ constexpr double kObjectError_m =
     0.002;  // the finger slows down beyond this error of the object ...
 constexpr double kObjectStop_m = 0.003;  // ... and waits beyond this one
 constexpr double kLost_s = 0.30;         // sliding without contact for so long ends the exploration
+
+int MaxCycles(const FingerExploration::Request& request, const ExplorationParameters& parameters) {
+  return request.max_cycles > 0 ? request.max_cycles : static_cast<int>(parameters.max_cycles);
+}
 
 }  // namespace
 
@@ -45,6 +51,11 @@ void FingerExploration::Remember(const Estimate& estimate, double dt) {
   if (phi_smooth_ <= phi_best_) return;
   phi_best_ = phi_smooth_;
   p_OC_best_ = p_OC_smooth_;
+}
+
+bool FingerExploration::TryAgain(const ExplorationParameters& parameters) const {
+  return tries_ + 1 < kMaxTries && phi_best_ < kLittleGain * phi_initial_ &&
+         2 * cycles() < MaxCycles(request_, parameters);
 }
 
 void FingerExploration::EndSlide(const Estimate& estimate, HybridController* controller) {
@@ -126,7 +137,16 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     const Vector3d error = TangentPart(p_best_W - finger.p_WC, finger.normal_W);
     const double distance = error.norm();
     if (distance < kReturned_m || ticks_ * dt > kReturnLimit_s) {
-      EndSlide(estimate, controller);
+      if (TryAgain(parameters)) {
+        cycles_before_ += algorithm_.cycle();
+        algorithm_.Start(input, request_.estimator,
+                         request_.seed + 0x9e3779b97f4a7c15ULL * ++tries_,
+                         MaxCycles(request_, parameters) - cycles_before_, parameters);
+        end_ = End::kNone;
+        EnterPhase(Phase::kSlide);
+      } else {
+        EndSlide(estimate, controller);
+      }
     } else {
       task.v_W =
           patience * error * (std::min(parameters.speed_max, kReturnGain * distance) / distance);
@@ -141,7 +161,8 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     return;
   }
   end_ = status == SurfaceExploration::Status::kConverged ? End::kGradient : End::kMaxCycles;
-  if (request_.estimator == Estimator::kLeastSquares && phi_best_ > kWorthReturning * phi_smooth_) {
+  if (request_.estimator == Estimator::kLeastSquares &&
+      (phi_best_ > kWorthReturning * phi_smooth_ || TryAgain(parameters))) {
     EnterPhase(Phase::kReturn);
   } else {
     EndSlide(estimate, controller);
@@ -157,6 +178,8 @@ void FingerExploration::AddTo(StateHasher* hasher) const {
   hasher->Add(request_.criterion);
   hasher->Add(on_stability_);
   hasher->Add(slide_force_);
+  hasher->Add(tries_);
+  hasher->Add(cycles_before_);
   hasher->Add(phi_initial_);
   hasher->Add(phi_best_);
   hasher->Add(p_OC_best_);

@@ -53,17 +53,22 @@ class FingerExploration {
   double phi_final() const { return phi_final_; }
   bool on_stability() const { return on_stability_; }
   const SurfaceExploration& algorithm() const { return algorithm_; }
+  /// i of Algorithm 1, over all tries.
+  int cycles() const { return cycles_before_ + algorithm_.cycle(); }
   void AddTo(StateHasher* hasher) const;
 
  private:
   void EnterPhase(Phase phase);
   /// Low-passes phi and the contact point and remembers where phi was best, in the object's frame.
   void Remember(const Estimate& estimate, double dt);
+  /// Whether another try is due: little was gained and at least half of N_max is left.
+  bool TryAgain(const ExplorationParameters& parameters) const;
   void EndSlide(const Estimate& estimate, HybridController* controller);
 
   Request request_;
   Phase phase_ = Phase::kIdle;
-  int ticks_ = 0;  // in this phase
+  int ticks_ = 0;                      // in this phase
+  int tries_ = 0, cycles_before_ = 0;  // of Algorithm 1; cycles of the tries before this one
   bool stop_ = false, slide_began_ = false, slide_ended_ = false;
   bool on_stability_ = false;
   End end_ = End::kNone;

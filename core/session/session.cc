@@ -445,7 +445,7 @@ struct Session::Impl {
   }
 
   void JudgeExplorationEnd() {
-    job.explore.cycles = exploration.algorithm().cycle();
+    job.explore.cycles = exploration.cycles();
     job.explore.phi_final = exploration.phi();
     job.explore.phi_true_final = TruePhi();
   }
@@ -468,7 +468,7 @@ struct Session::Impl {
       job.explore.path_length_m += (truth.p_WC - p_path).norm();
       p_path = truth.p_WC;
       const double limit = job.explore.cycles > 0 ? job.explore.cycles : parameters.exploration.max_cycles;
-      job.progress = std::min(0.99, exploration.algorithm().cycle() / limit);
+      job.progress = std::min(0.99, exploration.cycles() / limit);
     }
     if (exploration.slide_ended()) {
       JudgeExplorationEnd();
@@ -768,7 +768,7 @@ struct Session::Impl {
       x.finger = exploration.request().finger;
       x.criterion = exploration.request().criterion;
       x.on_stability = exploration.on_stability();
-      x.cycle = exploration.algorithm().cycle();
+      x.cycle = exploration.cycles();
       x.phi = exploration.phi();
       x.gradient_norm = exploration.algorithm().gradient_norm();
       x.epsilon = parameters.exploration.epsilon;
