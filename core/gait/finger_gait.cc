@@ -9,6 +9,7 @@ namespace {
 constexpr double kMarginFilter_s = 0.05;
 constexpr double kRecoverLimit_s = 2.0;
 constexpr double kRecovered = 0.5;  // of the limits at which a regrasp is broken off
+constexpr double kSecondThought_s = 0.3;  // a refusal stands when the margin has been low so long
 constexpr double kFinish_s = 0.4;
 constexpr double kProgress = 0.02;   // rad: a cycle that turns the object less has not turned it
 constexpr double kFoundShare = 0.5;  // weight of the newest exploration's end
@@ -137,7 +138,7 @@ bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench,
 }
 
 void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
-                      const ObjectWrench& wrench, const GaitParameters& parameters) {
+                      const ObjectWrench& wrench, const GaitParameters& parameters, double dt) {
   const bool exploring = parameters.mode == static_cast<double>(GaitMode::kExploring);
   while (waiting_ != 0) {
     // The first of the table that waits, or the one farthest from its target.
@@ -154,9 +155,15 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
     }
     if (pick < 0) break;
     const GaitStep& step = order_[pick];
+    if ((!exploring || turned_before_ == 0) && farthest < parameters.skip_distance) {
+      waiting_ &= ~(1u << step.finger);
+      continue;
+    }
+    const bool refused = margins.without[step.finger] < parameters.margin_min;
+    // The margin still remembers the finger before in the air.
+    if (refused && ticks_ * dt < kSecondThought_s) return;
     waiting_ &= ~(1u << step.finger);
-    if ((!exploring || turned_before_ == 0) && farthest < parameters.skip_distance) continue;
-    if (margins.without[step.finger] < parameters.margin_min) {
+    if (refused) {
       refused_finger_ = happened_.refused_finger = step.finger;
       refused_margin_ = happened_.refused_margin = margins.without[step.finger];
       continue;
@@ -259,7 +266,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       if (stop_) {
         Enter(GaitPhase::kFinish);
       } else {
-        Next(hand, estimate, smooth_, wrench, parameters);
+        Next(hand, estimate, smooth_, wrench, parameters, dt);
       }
       break;
 

@@ -93,7 +93,7 @@ class FingerGait {
   void EndMotion();
   /// Picks the next finger that shall and may leave, or starts the next object motion.
   void Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
-            const ObjectWrench& wrench, const GaitParameters& parameters);
+            const ObjectWrench& wrench, const GaitParameters& parameters, double dt);
   void EndCycle(const HandModel& hand, const GaitParameters& parameters);
   Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench,
                            const GaitParameters& parameters) const;
