@@ -11,6 +11,7 @@ constexpr int kTouchTicks = 3;      // consecutive ticks of contact that count a
 constexpr double kNear = 0.0015;    // this near to above the target the finger comes down [m]
 constexpr double kLate_s = 0.15;    // it comes down anyway so long after its target got there
 constexpr double kTooDeep = 0.010;  // so far below where it left: no surface here [m]
+constexpr double kClear = 0.001;        // across: after so far a touch is an obstacle [m]
 constexpr double kLost_s = 1.0;     // a finger that reloads without contact for so long is lost
 constexpr double kSlideArrived = 0.0005;  // [m]
 constexpr double kSlideLimit_s = 2.5;
@@ -172,6 +173,11 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
       Reach(distance > 1e-9 ? Vector3d(way * (speed / distance)) : Vector3d(Vector3d::Zero()), dt,
             &task);
       if (distance > 1e-6) ticks_ = 0;  // counts from when the target has arrived
+      // Something is in the way: the finger stands where it touches, rather than push the object.
+      if (finger.in_contact && finger.ticks_in_contact >= kTouchTicks && path_ > kClear) {
+        Enter(Phase::kReload);
+        break;
+      }
       const bool near = (above - finger.p_WF).norm() < kNear;
       if (abort_ || (distance <= 1e-6 && (near || ticks_ * dt > kLate_s))) {
         normal_W_ = target.normal_W;
