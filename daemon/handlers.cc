@@ -34,6 +34,7 @@ constexpr std::array kHandlers = {
     Entry{"release", handlers::Release},
     Entry{"reset", handlers::Reset},
     Entry{"resume", handlers::Resume},
+    Entry{"rotate", handlers::Rotate},
     Entry{"shutdown", handlers::Shutdown},
     Entry{"status", handlers::Status},
     Entry{"step", handlers::Step},

@@ -22,6 +22,7 @@ Outcome Push(Service&, const Params&, Client&);
 Outcome Release(Service&, const Params&, Client&);
 Outcome Reset(Service&, const Params&, Client&);
 Outcome Resume(Service&, const Params&, Client&);
+Outcome Rotate(Service&, const Params&, Client&);
 Outcome Step(Service&, const Params&, Client&);
 Outcome Stop(Service&, const Params&, Client&);
 

@@ -6,10 +6,23 @@ void History::Add(const Frame& frame) {
   // Half a tick of slack: times are multiples of dt, their differences carry rounding.
   if (!fine_.empty() && frame.time_s - fine_.back()->time_s < kFinePeriod - 1e-4) return;
   fine_.push_back(std::make_shared<const Frame>(frame));
+  AddToExploration(fine_.back());
   if (fine_.size() <= kFine) return;
   if (aged_++ % kCoarseEvery == 0) coarse_.push_back(fine_.front());
   fine_.pop_front();
   if (coarse_.size() > kCoarse) coarse_.pop_front();
+}
+
+void History::AddToExploration(const std::shared_ptr<const Frame>& frame) {
+  const bool exploring = frame->state == SessionState::kExploring;
+  const bool another = exploring && exploring_ && explorations_.back().back()->job.id != frame->job.id;
+  if (exploring && (!exploring_ || another)) {
+    explorations_.emplace_back();
+    if (explorations_.size() > kExplorations) explorations_.pop_front();
+  }
+  exploring_ = exploring;
+  if (exploring && explorations_.back().size() < kExplorationFrames)
+    explorations_.back().push_back(frame);
 }
 
 void History::Add(const Event& event) {
@@ -22,6 +35,7 @@ void History::Clear() {
   coarse_.clear();
   events_.clear();
   aged_ = 0;
+  exploring_ = false;
 }
 
 std::vector<std::shared_ptr<const Frame>> History::Frames(double last_s) const {

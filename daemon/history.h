@@ -19,22 +19,33 @@ class History {
   static constexpr std::size_t kCoarseEvery =
       10;  ///< one of so many fine frames is kept for longer
   static constexpr std::size_t kEvents = 4096;
+  static constexpr std::size_t kExplorations = 2;
+  static constexpr std::size_t kExplorationFrames = 6000;  ///< of one; 120 s, the rest is cut off
 
   /// Keeps the frame when kFinePeriod has passed since the last one kept.
   void Add(const Frame& frame);
   void Add(const Event& event);
-  /// Forgets everything: a new run began.
+  /// Forgets everything but the explorations: a new run began.
   void Clear();
 
   /// Frames of the last `last_s` seconds of simulated time (0 = all), oldest first.
   std::vector<std::shared_ptr<const Frame>> Frames(double last_s) const;
+  /// Frames of the last explorations (jobs, not those of a gait), oldest first, at most
+  /// kExplorations of them. They outlive a reset, so that runs can be compared.
+  std::vector<std::vector<std::shared_ptr<const Frame>>> Explorations() const {
+    return {explorations_.begin(), explorations_.end()};
+  }
   /// Events kept, oldest first.
   std::vector<Event> Events() const { return {events_.begin(), events_.end()}; }
   std::size_t size() const { return fine_.size() + coarse_.size(); }
 
  private:
+  void AddToExploration(const std::shared_ptr<const Frame>& frame);
+
   std::deque<std::shared_ptr<const Frame>> coarse_, fine_;
-  std::size_t aged_ = 0;  ///< frames that have left the fine part
+  std::deque<std::vector<std::shared_ptr<const Frame>>> explorations_;
+  bool exploring_ = false;  ///< the last frame kept belongs to explorations_.back()
+  std::size_t aged_ = 0;    ///< frames that have left the fine part
   std::deque<Event> events_;
 };
 

@@ -42,12 +42,33 @@ struct Job {
   std::filesystem::path directory;
   std::vector<std::shared_ptr<const Frame>> frames;
   std::vector<Event> events;
+  std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;  ///< comparison
   HandModel hand;
   std::shared_ptr<const ObjectModel> object;
   PlotOptions options;
   std::uintmax_t bytes = 0;
   std::string failure;
 };
+
+std::vector<Frame> Copy(const std::vector<std::shared_ptr<const Frame>>& frames) {
+  std::vector<Frame> copy;
+  copy.reserve(frames.size());
+  for (const auto& frame : frames) copy.push_back(*frame);
+  return copy;
+}
+
+/// Figure 2: a curve per exploration, named by its criterion; numbered when that does not tell them
+/// apart.
+void DrawComparison(const Job& job, const std::string& path) {
+  std::vector<std::vector<Frame>> frames;
+  std::vector<LabelledRun> runs;
+  for (const auto& exploration : job.explorations) frames.push_back(Copy(exploration));
+  for (const auto& run : frames)
+    runs.push_back({std::string(Name(run.back().job.explore.criterion)), run});
+  if (std::ranges::all_of(runs, [&](const auto& r) { return r.label == runs[0].label; }))
+    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].label += fmt::format(" ({})", i + 1);
+  PlotQualityComparison(runs, job.hand, job.options, path);
+}
 
 /// Draws beside the target and renames: a reader sees the old picture or the new one, and a
 /// symbolic link is replaced, not followed.
@@ -57,11 +78,11 @@ void Draw(Job* job) {
     const std::filesystem::path target = job->directory / job->file;
     const std::filesystem::path draft =
         job->directory / fmt::format(".draft{}", target.extension().string());
-    std::vector<Frame> history;
-    history.reserve(job->frames.size());
-    for (const auto& frame : job->frames) history.push_back(*frame);
+    const std::vector<Frame> history = Copy(job->frames);
     std::filesystem::remove(draft);
-    if (job->name == "contacts")
+    if (job->name == "comparison")
+      DrawComparison(*job, draft.string());
+    else if (job->name == "contacts")
       PlotContacts(history, job->hand, *job->object, job->options, draft.string());
     else if (job->name == "gait")
       PlotGait(history, job->events, job->hand, job->options, draft.string());
@@ -91,6 +112,15 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   }
   if (job->frames.empty())
     throw RpcException(ErrorCode::kBadState, "nothing has happened yet", "regrasp grasp");
+  if (job->name == "comparison") {
+    job->explorations = service.history().Explorations();
+    if (job->explorations.size() < History::kExplorations)
+      throw RpcException(ErrorCode::kBadState,
+                         fmt::format("a comparison shows the last {} explorations, there are {}",
+                                     History::kExplorations, job->explorations.size()),
+                         "regrasp explore ring --wait, then another with --criterion combined");
+    job->frames = job->explorations.back();
+  }
   job->events = service.history().Events();
   job->hand = service.hand();
   job->object = service.accepted.object;

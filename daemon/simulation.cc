@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "core/sensing/noise.h"
 #include "daemon/frame_json.h"
 #include "daemon/handlers.h"
 
 namespace regrasp::handlers {
 namespace {
+
+constexpr double kLeastAxis = 1e-9;  // shorter than this, an axis has no direction
 
 /// Checks, makes a job and queues the command that works on it.
 Outcome StartJob(Service& service, JobMethod method, Command command) {
@@ -77,6 +81,39 @@ Outcome Explore(Service& service, const Params& params, Client&) {
   return StartJob(service, JobMethod::kExplore, std::move(command));
 }
 
+Outcome Rotate(Service& service, const Params& params, Client&) {
+  const bool continuous = params.Bool("continuous", false);
+  const int given = params.Has("angle_rad") + params.Has("turns") + continuous;
+  if (given != 1)
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams,
+                 fmt::format("rotate takes one of angle_rad, turns and continuous, not {}", given),
+                 "regrasp rotate --angle 90 --wait",
+                 "angle_rad",
+                 {}});
+  Command command = Of(CommandType::kRotate);
+  command.continuous = continuous;
+  command.angle_rad =
+      params.Number("angle_rad", 2 * std::numbers::pi * params.Number("turns", 0));
+  if (!continuous && command.angle_rad == 0)
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "an angle of 0 leaves nothing to turn",
+                                "regrasp rotate --angle 90 --wait",
+                                params.Has("turns") ? "turns" : "angle_rad",
+                                {}});
+  command.axis_W = params.Vector("axis", command.axis_W);
+  const double length = command.axis_W.norm();
+  if (length < kLeastAxis)
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "the axis has no direction: its length is 0",
+                                "regrasp rotate --angle 90 --axis 0,0,1",
+                                "axis",
+                                {}});
+  command.axis_W /= length;
+  command.speed_rad_s = params.Number("speed_rad_s", 0);
+  return StartJob(service, JobMethod::kRotate, std::move(command));
+}
+
 Outcome Stop(Service& service, const Params&, Client&) {
   service.CheckAllowed(CommandType::kStop);
   const JobRecord* job = service.jobs().Unfinished();
@@ -107,7 +144,6 @@ Outcome Step(Service& service, const Params& params, Client&) {
   const std::int64_t id = service.jobs().Add(JobMethod::kStep).id;
   try {
     const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kStep,
-
                                                 .job = id,
                                                 .ticks = params.Integer("ticks", 1)});
     return {.result = {{"job", id}}, .barrier = barrier};

@@ -12,7 +12,8 @@ constexpr std::array<std::string_view, 4> kCriteria = {"manipulability", "stabil
                                                        "combined"};
 constexpr std::array<std::string_view, 2> kEstimators = {"least_squares", "secant"};
 constexpr std::array<std::string_view, 5> kPresets = {"off", "fine", "paper", "coarse", "taxel"};
-constexpr std::array<std::string_view, 4> kPlots = {"contacts", "gait", "quality", "scene"};
+constexpr std::array<std::string_view, 5> kPlots = {"comparison", "contacts", "gait", "quality",
+                                                    "scene"};
 constexpr std::array<std::string_view, 6> kTopics = {"contacts", "events", "joints",
                                                      "quality",  "status", "truth"};
 
@@ -198,6 +199,35 @@ constexpr std::array kReset = {
               .names = NameSource::kObject,
               .default_text = "the present object"},
 };
+constexpr std::array kRotate = {
+    ParamSpec{.name = "angle_rad",
+              .sentence = "turn by this angle, signed; or give turns or continuous",
+              .unit = "rad",
+              .min = -1e4,
+              .max = 1e4,
+              .default_text = "not used"},
+    ParamSpec{.name = "turns",
+              .sentence = "turn so many times, signed",
+              .min = -1000,
+              .max = 1000,
+              .default_text = "not used"},
+    ParamSpec{.name = "continuous",
+              .type = kBool,
+              .sentence = "turn until stopped",
+              .default_text = "false"},
+    ParamSpec{.name = "axis",
+              .type = kVector3,
+              .sentence = "direction in W about which the object turns; any length but zero",
+              .min = -1e6,
+              .max = 1e6,
+              .default_text = "[0, 0, 1]"},
+    ParamSpec{.name = "speed_rad_s",
+              .sentence = "speed of the object while it moves",
+              .unit = "rad/s",
+              .min = 0.001,
+              .max = 10,
+              .default_text = "parameter gait.speed_rad_s"},
+};
 constexpr std::array kStep = {
     ParamSpec{.name = "ticks",
               .type = kInteger,
@@ -275,6 +305,8 @@ constexpr std::array kMethods = {
                "seed, object"},
     MethodSpec{"resume", "resume", "let the clock of the simulation run again", kNone, false,
                "paused, tick"},
+    MethodSpec{"rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
+               "job"},
     MethodSpec{"shutdown", "down", "stop the daemon cleanly", kNone, false, "stopping"},
     MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
                "version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, "

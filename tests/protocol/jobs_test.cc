@@ -130,6 +130,31 @@ TEST_F(Jobs, AnExplorationsRecordIsComplete) {
   EXPECT_GT(std::filesystem::file_size(plot["path"].get<std::string>()), 1000u);
 }
 
+TEST_F(Jobs, ARotationIsStoppedIntoAHoldAndItsRecordIsComplete) {
+  const Json grasp = client->Result("grasp")["job"];
+  Step(6000);
+  ASSERT_EQ(Wait(grasp)["state"], "done");
+  // Any length of the axis will do.
+  const Json job =
+      client->Result("rotate", {{"continuous", true}, {"axis", {0, 0, -1e-3}}})["job"];
+  Step(3000);
+  EXPECT_EQ(client->Result("status")["state"], "rotating");
+  EXPECT_EQ(client->Error("rotate", {{"turns", 1}}), -32001);
+  client->Result("stop");
+  Step(3000);
+  EXPECT_EQ(client->Result("status")["state"], "holding");
+  const Json record = Wait(job);
+  for (const char* field : {"angle_rad", "turns", "gait_cycles", "regrasps", "dropped",
+                            "max_position_error_m", "max_tilt_rad", "sim_time_s"})
+    EXPECT_TRUE(record.contains(field)) << field;
+  EXPECT_EQ(record["method"], "rotate");
+  EXPECT_EQ(record["state"], "cancelled");
+  EXPECT_EQ(record["dropped"], false);
+  // Three seconds at 20 deg/s, pauses for regrasps included, turn by more than the first motion's
+  // half step; and about the axis given, so with a positive sign.
+  EXPECT_GT(record["angle_rad"].get<double>(), 0.1);
+}
+
 TEST_F(Jobs, TheListKeepsTheLast256) {
   for (int i = 0; i < 260; ++i) Step(1);
   const Json jobs = client->Result("job.list")["jobs"];

@@ -79,6 +79,30 @@ TEST(History, ThinsWhatIsOlderThanAMinute) {
   EXPECT_TRUE(history.Frames(0).empty());
 }
 
+TEST(History, KeepsTheLastTwoExplorationsAcrossAReset) {
+  History history;
+  const auto run = [&](int job, SessionState state, int frames) {
+    Frame frame;
+    frame.job.id = job;
+    frame.state = state;
+    for (int i = 0; i < frames; ++i) {
+      frame.time_s += History::kFinePeriod;
+      history.Add(frame);
+    }
+    history.Clear();
+  };
+  run(1, SessionState::kExploring, 5);
+  run(2, SessionState::kRotating, 5);  // explorations of a gait do not count
+  EXPECT_EQ(history.Explorations().size(), 1u);
+  run(3, SessionState::kExploring, 7);
+  run(4, SessionState::kExploring, 9);
+  const auto kept = history.Explorations();
+  ASSERT_EQ(kept.size(), History::kExplorations);
+  EXPECT_EQ(kept[0].size(), 7u);
+  EXPECT_EQ(kept[1].size(), 9u);
+  EXPECT_EQ(kept[1].front()->job.id, 4);
+}
+
 TEST(JobTable, IgnoresNewsOlderThanTheEnd) {
   JobTable jobs;
   JobRecord job = jobs.Add(JobMethod::kGrasp);

@@ -40,6 +40,17 @@ TEST_F(Requests, AnswerWithTheRightCode) {
       {"explore", {{"finger", "ring"}, {"criterion", "best"}}, -32602},
       {"explore", {{"finger", "ring"}}, -32002},  // nothing is held
       {"release", {}, -32002},
+      {"rotate", {{"turns", 1}}, -32002},  // nothing is held
+      {"rotate", {}, -32602},
+      {"rotate", {{"turns", 1}, {"angle_rad", 1}}, -32602},
+      {"rotate", {{"turns", 1}, {"continuous", true}}, -32602},
+      {"rotate", {{"continuous", false}}, -32602},
+      {"rotate", {{"turns", 0}}, -32602},
+      {"rotate", {{"angle_rad", 1}, {"axis", {0, 0, 0}}}, -32602},
+      {"rotate", {{"angle_rad", 1}, {"axis", {0, 1}}}, -32602},
+      {"rotate", {{"angle_rad", 1}, {"axis_W", {0, 0, 1}}}, -32602},
+      {"rotate", {{"angle_rad", 1}, {"speed_rad_s", 0}}, -32602},
+      {"plot", {{"name", "comparison"}}, -32002},  // there were no two explorations
       {"push", {{"force_n", {1, 0, 0}}}, -32002},
       {"push", {{"force_n", {1, 0}}}, -32602},
       {"push", {{"force_n", {1, 0, 1e9}}}, -32602},
