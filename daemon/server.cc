@@ -154,8 +154,8 @@ std::uint64_t Server::After(double seconds, std::function<void()> action) {
   timer.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(seconds)));
   timer.async_wait([this, key, action = std::move(action)](std::error_code error) {
-    if (error) return;
-    timers_.erase(key);
+    // Cancelled after it had expired: the handler was already queued and comes without an error.
+    if (error || timers_.erase(key) == 0) return;
     action();
   });
   return key;
