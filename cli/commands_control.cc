@@ -160,9 +160,10 @@ std::vector<CommandSpec> ControlCommands() {
       MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
   param_get.args.front().required = true;
   param_get.sentence = "value, unit, range and source of a parameter";
-  std::vector<CommandSpec> commands = {
+  return {
       MethodCommand("grasp", kGroup, StartJob),
       MethodCommand("release", kGroup, StartJob),
+      MethodCommand("rotate", kGroup, Rotate),
       MethodCommand("explore", kGroup, StartJob, {.positional = {"finger"}}),
       MethodCommand("stop", kGroup, Stop),
       MethodCommand("pause", kGroup, PauseOrResume),
@@ -189,10 +190,6 @@ std::vector<CommandSpec> ControlCommands() {
       param_get,
       MethodCommand("param.set", kGroup, ParamGetOrSet, {.positional = {"name", "value"}}),
   };
-  // Offered when the wire has it.
-  if (FindMethod("rotate") != nullptr)
-    commands.insert(commands.begin() + 2, MethodCommand("rotate", kGroup, Rotate));
-  return commands;
 }
 
 }  // namespace regrasp::cli

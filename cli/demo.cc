@@ -25,6 +25,10 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kGraspChunkTicks =
     500;  // the grasp is stepped in chunks, so that every run ends it at the same tick
 constexpr int kMaxGraspChunks = 60;
+constexpr double kTurns = 1;
+const Json kAxis_W = {0, 0, -1};
+constexpr double kAngleTolerance = 5;  // [deg]
+constexpr double kOffsetLimit = 5;     // of the object while it turns [mm]
 constexpr double kForceTolerance =
     0.02;  // of the weight: what the project promises for a hold at rest
 
@@ -64,8 +68,7 @@ class PrivateDaemon {
 /// One line of the final table.
 struct Claim {
   std::string claim, measured;
-  enum { kShown, kMissed, kNotTried } verdict = kShown;
-  bool required = true;
+  bool shown = true;
 };
 
 struct Exploration {
@@ -83,6 +86,8 @@ class Show {
   void Explorations(int repeats);
   void Rotation();
   const std::vector<Claim>& claims() const { return claims_; }
+  /// The hand held the object to the end of every step.
+  bool held() const { return held_; }
   const Json& measured() const { return measured_; }
 
  private:
@@ -98,9 +103,14 @@ class Show {
   Exploration Explore(const std::string& finger, const std::string& criterion,
                       std::int64_t gradient_seed);
   void Picture(const std::string& name, const std::string& file);
-  void Add(const std::string& claim, const std::string& measured, bool shown,
-           bool required = true) {
-    claims_.push_back({claim, measured, shown ? Claim::kShown : Claim::kMissed, required});
+  void Add(const std::string& claim, const std::string& measured, bool shown) {
+    claims_.push_back({claim, measured, shown});
+  }
+  /// The object must stay in the hand, whatever else a step shows.
+  void MustHold(const std::string& step) {
+    if (Call("status").at("state") == "holding") return;
+    held_ = false;
+    Add(step + " keeps the object", "it was dropped", false);
   }
 
   Context& context_;
@@ -108,6 +118,7 @@ class Show {
   fs::path output_;
   std::int64_t seed_;
   std::vector<Claim> claims_;
+  bool held_ = true;
   Json measured_ = Json::object();
 };
 
@@ -167,7 +178,7 @@ void Show::Grasp() {
       touching == fingers && foreign == 0);
   Add("", fmt::format("forces sum to {:.3f} N, weight {:.3f} N", sum, weight),
       std::abs(sum - weight) < kForceTolerance * weight);
-  Picture("scene", "figure1-scene.png");
+  Picture("scene", "figure1.png");
 }
 
 Exploration Show::Explore(const std::string& finger, const std::string& criterion,
@@ -184,6 +195,7 @@ Exploration Show::Explore(const std::string& finger, const std::string& criterio
       run.least_stability = std::min(run.least_stability, quality["stability"].get<double>());
     try {
       run.record = client_.Call("job.wait", {{"id", job.at("job")}, {"timeout_s", 0.02}}, 30);
+      MustHold("exploring (" + finger + ")");
       return run;
     } catch (const CliError& error) {
       if (error.code != kTimeout || error.rpc_code == 0) throw;
@@ -220,14 +232,10 @@ void Show::Explorations(int repeats) {
 
   Say("figure 2: two explorations of the ring finger from one state");
   const Exploration first = Explore("ring", "manipulability", seed_);
-  Picture("quality", "figure2-manipulability.png");
-  Picture("contacts", "figure3a-contacts.png");
+  Picture("quality", "quality.png");
   const double threshold = Call("quality").value("threshold", 0.0);
   const Exploration second = Explore("ring", "combined", seed_);
-  Picture("quality", "figure2-combined.png");
-  const auto& plots = FindParam(*FindMethod("plot"), "name")->values;
-  if (std::find(plots.begin(), plots.end(), "comparison") != plots.end())
-    Picture("comparison", "figure2.png");
+  Picture("comparison", "figure2.png");
   measured_["figure2"] = {{"manipulability", first.record},
                           {"combined", second.record},
                           {"start_hash", {first.start_hash, second.start_hash}},
@@ -254,32 +262,30 @@ void Show::Explorations(int repeats) {
 }
 
 void Show::Rotation() {
-  const char* claim = "rotates by finger gait (Sec. III b)";
-  if (FindMethod("rotate") == nullptr) {
-    claims_.push_back({claim, "this version has no `rotate` yet", Claim::kNotTried, false});
-    return;
-  }
   Say("rotating by finger gait");
-  try {
-    GraspPaused();
-    const Json job = Call("rotate", {{"turns", 1}});
-    Call("resume");
-    const Json record = Wait(job);
-    measured_["rotate"] = record;
-    const bool good = JobExit(record) == kOk;
-    Add(claim,
-        good || At(record, "error").is_null()
-            ? fmt::format(
-                  "{} deg, {} regrasps, offset {} mm", Fixed(At(record, "angle_rad"), 0, kDegrees),
-                  Plain(At(record, "regrasps")), Fixed(At(record, "max_position_error_m"), 1, 1e3))
-            : Plain(At(record, "error")),
-        good, false);
-    Picture("gait", "figure3b-gait.png");
-    Picture("contacts", "figure3a-contacts.png");
-  } catch (const CliError& error) {
-    if (error.code == kInterrupted || error.code == kNoDaemon) throw;
-    Add(claim, error.what(), false, false);
-  }
+  GraspPaused();
+  const Json job = Call("rotate", {{"turns", kTurns}, {"axis", kAxis_W}});
+  Call("resume");
+  const Json record = Wait(job);
+  measured_["rotate"] = record;
+  Picture("gait", "figure3b.png");
+  Picture("contacts", "figure3a.png");
+  const double degrees = record.at("angle_rad").get<double>() * kDegrees;
+  const double seconds = record.at("sim_time_s");
+  const char* claim = "rotates by finger gait (Sec. III b)";
+  if (const Json& reason = At(record, "error"); reason.is_string())
+    Add(claim, Plain(reason), false);
+  else
+    Add(claim, fmt::format("no drop, {} regrasps", Plain(At(record, "regrasps"))),
+        JobExit(record) == kOk);
+  Add("", fmt::format("{:.0f} deg of {:.0f}, {:.0f} deg/min", degrees, 360 * kTurns,
+                      seconds > 0 ? 60 * degrees / seconds : 0.0),
+      std::abs(degrees - 360 * kTurns) < kAngleTolerance);
+  const double offset_mm = record.at("max_position_error_m").get<double>() * 1e3;
+  Add("", fmt::format("object within {:.1f} mm, axis within {} deg", offset_mm,
+                      Fixed(At(record, "max_tilt_rad"), 1, kDegrees)),
+      offset_mm < kOffsetLimit);
+  MustHold("the rotation");
 }
 
 }  // namespace
@@ -307,33 +313,25 @@ ExitCode Demo(Context& context, const Invocation& invocation) {
   show.Explorations(repeats);
   show.Rotation();
 
-  bool good = true;
-  Json answer = {{"ok", true},
+  const bool good = show.held();
+  Json answer = {{"ok", good},
                  {"output_dir", output.string()},
                  {"seed", seed},
                  {"claims", Json::array()},
                  {"measured", show.measured()}};
   for (const auto& claim : show.claims()) {
-    const char* verdict = claim.verdict == Claim::kShown    ? "shown"
-                          : claim.verdict == Claim::kMissed ? "missed"
-                                                            : "not tried";
-    if (claim.required && claim.verdict != Claim::kShown) good = false;
     answer["claims"].push_back({{"claim", claim.claim},
                                 {"measured", claim.measured},
-                                {"verdict", verdict},
-                                {"required", claim.required}});
+                                {"verdict", claim.shown ? "shown" : "missed"}});
   }
-  answer["ok"] = good;
   std::ofstream(output / "summary.json") << answer.dump(1) << '\n';
   context.Print(answer, [&] {
     Output& out = context.out();
     Table table({"THE PAPER", "THIS RUN", ""});
     for (const auto& claim : show.claims()) {
       table.Row({claim.claim, claim.measured,
-                 claim.verdict == Claim::kShown ? out.Paint(std::string(out.Tick()), Style::kGood)
-                 : claim.verdict == Claim::kMissed
-                     ? out.Paint("MISSED", claim.required ? Style::kBad : Style::kWarn)
-                     : out.Paint("-", Style::kWarn)});
+                 claim.shown ? out.Paint(std::string(out.Tick()), Style::kGood)
+                             : out.Paint("MISSED", Style::kWarn)});
     }
     out.Add(table.Text(out));
     out.Line();

@@ -179,17 +179,18 @@ class Demo(Case):
     def test_the_demo_shows_the_claims(self):
         done = self.regrasp("--json", "demo", "-o", self.dir / "demo", "--repeats", "1", "--models-dir", SOURCE / "models")
         answer = json.loads(done.stdout)
-        # Exit code and table must agree, whatever the run showed.
-        missed = [claim for claim in answer["claims"] if claim["required"] and claim["verdict"] != "shown"]
-        self.assertEqual(done.returncode, 1 if missed else 0, done.stdout)
-        self.assertEqual(answer["ok"], not missed)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue(answer["ok"])
         self.assertGreaterEqual(len(answer["claims"]), 10)
         start = answer["measured"]["figure2"]["start_hash"]
         self.assertEqual(start[0], start[1])
         for picture in answer["measured"]["pictures"]:
             with open(picture, "rb") as file:
                 self.assertEqual(file.read(8), PNG)
-        self.assertEqual(missed, [])
+        names = {os.path.basename(picture) for picture in answer["measured"]["pictures"]}
+        self.assertLessEqual({"figure1.png", "figure2.png", "figure3a.png", "figure3b.png"}, names)
+        # The demo's own figures, seed 1: every claim of the table is met.
+        self.assertEqual([claim for claim in answer["claims"] if claim["verdict"] != "shown"], [])
 
 
 if __name__ == "__main__":
