@@ -3,7 +3,8 @@
 //   claims hold      [--seeds N] [--first S] [--seconds T]   six gravity directions
 //   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg
 //   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
-//   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all] [--speed DEG_S]
+//   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all]
+//   [--speed DEG_S]
 //                   [--explore]
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
 // Common: --noise PRESET --object NAME --set NAME=VALUE (repeatable) --exact --rows (a line per
@@ -292,10 +293,9 @@ struct PhiChange {
   double before, start, after;
 };
 
-/// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused, dropped, angle
-/// error deg, regrasps on manipulability, of them higher after than before, explorations begun below 98 % of best, of
-/// them rose,
-/// mean change start-to-after, mean after}
+/// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused,
+/// dropped, angle error deg, regrasps on manipulability, of them higher after than before,
+/// explorations begun below 98 % of best, of them rose, mean change start-to-after, mean after}
 Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
   if (!Grasp(session)) return {kFailed};
   Command c;
@@ -308,7 +308,8 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   JobRecord job;
   double slips = 0, refused = 0, touching = 0;
   std::vector<PhiChange> changes;
-  const auto limit = session.tick() + static_cast<std::int64_t>(std::abs(o.turns) * 1000 * 1000) + 30000;
+  const auto limit =
+      session.tick() + static_cast<std::int64_t>(std::abs(o.turns) * 1000 * 1000) + 30000;
   while (job.id == 0 && session.tick() < limit) {
     session.Tick();
     touching += session.truth().link_link_contacts > 0;
@@ -331,8 +332,8 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   double rose = 0, low = 0, low_rose = 0, gain = 0, phi = 0;
   for (const PhiChange& p : changes) {
     if (o.rows && o.exploring)
-      std::fprintf(stderr, "    finger %d manipulability %.4f -> %.4f -> %.4f\n", p.finger, p.before, p.start,
-                   p.after);
+      std::fprintf(stderr, "    finger %d manipulability %.4f -> %.4f -> %.4f\n", p.finger,
+                   p.before, p.start, p.after);
     rose += p.after > p.before;
     gain += p.after / p.start - 1;
     phi += p.after;
@@ -344,11 +345,12 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   const double wanted = o.turns * 360, angle = r.angle_rad * 180 / M_PI;
   if (o.rows || job.state != JobState::kDone)
     std::fprintf(stderr,
-                 "  seed %llu %s %.1f deg in %.1f s  offset %.2f mm  tilt %.1f deg  regrasps %d  slips %.0f  "
+                 "  seed %llu %s %.1f deg in %.1f s  offset %.2f mm  tilt %.1f deg  regrasps %d  "
+                 "slips %.0f  "
                  "refused %.0f  link-link %.1f %%  %s\n",
                  static_cast<unsigned long long>(seed), Name(job.state).data(), angle, r.sim_time_s,
-                 r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps, slips, refused,
-                 r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
+                 r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps, slips,
+                 refused, r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
   return {job.state == JobState::kDone ? 1.0 : 0.0,
           angle,
           r.sim_time_s > 0 ? std::abs(angle) / r.sim_time_s * 60 : 0,
@@ -411,17 +413,20 @@ int Rotate(const Options& o) {
       low_rose += r[13];
     }
     std::printf(
-        "%-8s %.3g turns  done %2d/%-2zu  dropped %d  not grasped %d  mean %5.1f deg/min  offset max %.2f mm "
+        "%-8s %.3g turns  done %2d/%-2zu  dropped %d  not grasped %d  mean %5.1f deg/min  offset "
+        "max %.2f mm "
         " tilt max %.1f deg  angle error max %.1f deg  slips %.1f  refused %.1f\n",
-        label.c_str(), o.turns, done, rows.size(), dropped, failed, Mean(rate), Max(offset), Max(tilt),
-        Max(error), Mean(slips), Mean(refused));
+        label.c_str(), o.turns, done, rows.size(), dropped, failed, Mean(rate), Max(offset),
+        Max(tilt), Max(error), Mean(slips), Mean(refused));
     if (explored > 0)
       std::printf(
-          "         manipulability after a regrasp %.4f on average; above that before it in %.0f of %.0f\n",
+          "         manipulability after a regrasp %.4f on average; above that before it in %.0f "
+          "of %.0f\n",
           Mean(phi), rose, explored);
     if (o.exploring)
       std::printf(
-          "         explorations raised it by %.1f %% on average; in %.0f of the %.0f that began below 98 %% of "
+          "         explorations raised it by %.1f %% on average; in %.0f of the %.0f that began "
+          "below 98 %% of "
           "the best reached\n",
           100 * Mean(gain), low_rose, low);
     std::fflush(stdout);
@@ -491,8 +496,10 @@ int main(int argc, char** argv) {
       o.jobs = std::stoi(next());
     else if (a == "--exact")
       o.exact = true;
-    else if (a == "--iterations") o.iterations = std::stoi(next());
-    else if (a == "--warm") o.warm = std::stod(next());
+    else if (a == "--iterations")
+      o.iterations = std::stoi(next());
+    else if (a == "--warm")
+      o.warm = std::stod(next());
     else if (a == "--rows")
       o.rows = true;
     else if (a == "--set") {
@@ -509,8 +516,8 @@ int main(int argc, char** argv) {
   if (o.what == "explore") return Explore(o);
   if (o.what == "rotate") return Rotate(o);
   if (o.what == "repeat") return Repeat(o);
-  std::fprintf(
-      stderr,
-      "usage: claims hold|objects|explore|rotate|repeat [options]; see the head of bench/claims.cc\n");
+  std::fprintf(stderr,
+               "usage: claims hold|objects|explore|rotate|repeat [options]; see the head of "
+               "bench/claims.cc\n");
   return 2;
 }

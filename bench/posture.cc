@@ -1,9 +1,9 @@
 // Searches the generic preshape and closed posture of a hand for its scenario file.
 //   posture [--hand NAME] [--seed S] [--steps N] [--radius MM] [--tilt DEG] [--reach 0..1]
-// Random hill climbing, from the scenario as it is and within `reach` of it, over object position, contact directions and redundant joint angles. A
-// posture is good when the grasp without each finger in turn (the thumb above all) keeps a load
-// margin, joints are far from their limits, no finger is near singular and links keep clear of each
-// other. Prints TOML.
+// Random hill climbing, from the scenario as it is and within `reach` of it, over object position,
+// contact directions and redundant joint angles. A posture is good when the grasp without each
+// finger in turn (the thumb above all) keeps a load margin, joints are far from their limits, no
+// finger is near singular and links keep clear of each other. Prints TOML.
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -116,7 +116,9 @@ double RoomToClimb(const HandModel& hand, const Candidate& c, int f, double radi
   double best = 0;
   for (int k = 0; k < 8; ++k) {
     const double a = k * kPi / 4;
-    const Vector3d there = (direction + 0.005 / radius * (std::cos(a) * R.col(0) + std::sin(a) * R.col(1))).normalized();
+    const Vector3d there =
+        (direction + 0.005 / radius * (std::cos(a) * R.col(0) + std::sin(a) * R.col(1)))
+            .normalized();
     JointVector q = c.q;
     if (!SolveTip(hand, f, c.p_WO + there * (radius + hand.fingers[f].tip_radius), &q)) continue;
     best = std::max(best, Phi(q) / here - 1);
@@ -156,9 +158,10 @@ void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Can
   }
   c->room = 1e9;
   for (int f = 0; f <= last; ++f) c->room = std::min(c->room, RoomToClimb(hand, *c, f, radius));
-  c->score = 1.5 * std::min(c->room, 0.08) / 0.08 + 2.0 * std::min(c->rho[last], 0.3) / 0.3 + 1.0 * std::min(c->rho[last], 1.5) +
-             1.0 * std::min(worst_other, 1.0) + 1.5 * std::min(c->margin, 0.5) / 0.5 +
-             1.0 * std::min(c->sigma, 0.03) / 0.03 + std::min(0.0, (c->clearance - 0.005) / 0.001);
+  c->score = 1.5 * std::min(c->room, 0.08) / 0.08 + 2.0 * std::min(c->rho[last], 0.3) / 0.3 +
+             1.0 * std::min(c->rho[last], 1.5) + 1.0 * std::min(worst_other, 1.0) +
+             1.5 * std::min(c->margin, 0.5) / 0.5 + 1.0 * std::min(c->sigma, 0.03) / 0.03 +
+             std::min(0.0, (c->clearance - 0.005) / 0.001);
 }
 
 }  // namespace
@@ -237,10 +240,11 @@ int main(int argc, char** argv) {
   Evaluate(hand, radius, gravity, &closed);
   std::printf(
       "# posture --hand %s --seed %llu --steps %d --radius %g --tilt %g\n# score %.3f, clearance "
-      "%.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, room to climb %.1f %%, load margin without",
+      "%.1f mm (open %.1f, closed %.1f), joint margin %.2f, sigma_min %.4f m, room to climb %.1f "
+      "%%, load margin without",
       name.c_str(), static_cast<unsigned long long>(seed), steps, radius * 1e3, tilt, best.score,
       best.clearance * 1e3, open.clearance * 1e3, closed.clearance * 1e3, best.margin, best.sigma,
-              100 * best.room);
+      100 * best.room);
   for (int f = 0; f < hand.num_fingers(); ++f)
     std::printf(" %s %.2f N", hand.fingers[f].name.c_str(), best.rho[f]);
   std::printf("\n#");

@@ -278,12 +278,14 @@ void Show::Rotation() {
   else
     Add(claim, fmt::format("no drop, {} regrasps", Plain(At(record, "regrasps"))),
         JobExit(record) == kOk);
-  Add("", fmt::format("{:.0f} deg of {:.0f}, {:.0f} deg/min", degrees, 360 * kTurns,
-                      seconds > 0 ? 60 * degrees / seconds : 0.0),
+  Add("",
+      fmt::format("{:.0f} deg of {:.0f}, {:.0f} deg/min", degrees, 360 * kTurns,
+                  seconds > 0 ? 60 * degrees / seconds : 0.0),
       std::abs(degrees - 360 * kTurns) < kAngleTolerance);
   const double offset_mm = record.at("max_position_error_m").get<double>() * 1e3;
-  Add("", fmt::format("object within {:.1f} mm, axis within {} deg", offset_mm,
-                      Fixed(At(record, "max_tilt_rad"), 1, kDegrees)),
+  Add("",
+      fmt::format("object within {:.1f} mm, axis within {} deg", offset_mm,
+                  Fixed(At(record, "max_tilt_rad"), 1, kDegrees)),
       offset_mm < kOffsetLimit);
   MustHold("the rotation");
 }

@@ -15,7 +15,8 @@ void History::Add(const Frame& frame) {
 
 void History::AddToExploration(const std::shared_ptr<const Frame>& frame) {
   const bool exploring = frame->state == SessionState::kExploring;
-  const bool another = exploring && exploring_ && explorations_.back().back()->job.id != frame->job.id;
+  const bool another =
+      exploring && exploring_ && explorations_.back().back()->job.id != frame->job.id;
   if (exploring && (!exploring_ || another)) {
     explorations_.emplace_back();
     if (explorations_.size() > kExplorations) explorations_.pop_front();

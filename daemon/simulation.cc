@@ -93,8 +93,7 @@ Outcome Rotate(Service& service, const Params& params, Client&) {
                  {}});
   Command command = Of(CommandType::kRotate);
   command.continuous = continuous;
-  command.angle_rad =
-      params.Number("angle_rad", 2 * std::numbers::pi * params.Number("turns", 0));
+  command.angle_rad = params.Number("angle_rad", 2 * std::numbers::pi * params.Number("turns", 0));
   if (!continuous && command.angle_rad == 0)
     throw RpcException(RpcError{ErrorCode::kInvalidParams,
                                 "an angle of 0 leaves nothing to turn",
@@ -143,9 +142,8 @@ Outcome Step(Service& service, const Params& params, Client&) {
                        fmt::format("regrasp job wait {}", step->id));
   const std::int64_t id = service.jobs().Add(JobMethod::kStep).id;
   try {
-    const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kStep,
-                                                .job = id,
-                                                .ticks = params.Integer("ticks", 1)});
+    const std::uint64_t barrier = service.Post(
+        {.kind = ControlRequest::Kind::kStep, .job = id, .ticks = params.Integer("ticks", 1)});
     return {.result = {{"job", id}}, .barrier = barrier};
   } catch (...) {
     service.jobs().Withdraw(id);

@@ -28,8 +28,14 @@ class FixedVector {
   bool empty() const { return size_ == 0; }
   bool full() const { return size_ == N; }
   static constexpr std::size_t capacity() { return N; }
-  T& operator[](std::size_t i) { assert(i < size_); return items_[i]; }
-  const T& operator[](std::size_t i) const { assert(i < size_); return items_[i]; }
+  T& operator[](std::size_t i) {
+    assert(i < size_);
+    return items_[i];
+  }
+  const T& operator[](std::size_t i) const {
+    assert(i < size_);
+    return items_[i];
+  }
   T& back() { return (*this)[size_ - 1]; }
   const T& back() const { return (*this)[size_ - 1]; }
   T* begin() { return items_.data(); }

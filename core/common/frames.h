@@ -2,9 +2,9 @@
 
 /// Frames and notation, defined once.
 ///
-/// Names follow `<quantity>_<measured-in><target>[_<expressed-in>]`, so that adjacent letters cancel:
-/// `p_WQ = X_WC * p_CQ`. Quantities: p position [m], R rotation, X rigid transform, v velocity [m/s],
-/// w angular velocity [rad/s], f force [N], n unit normal.
+/// Names follow `<quantity>_<measured-in><target>[_<expressed-in>]`, so that adjacent letters
+/// cancel: `p_WQ = X_WC * p_CQ`. Quantities: p position [m], R rotation, X rigid transform, v
+/// velocity [m/s], w angular velocity [rad/s], f force [N], n unit normal.
 ///
 ///   W  world; equal to H (the palm never moves: tilting the palm is done by turning gravity)
 ///   H  hand: fingers point to +z, the palm's normal is -y, the thumb side is +x
@@ -26,8 +26,8 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// A right-handed rotation whose third column is the unit vector `z`. Deterministic; the tangent axes
-/// are otherwise arbitrary. Used for R_WC with z = outward object normal.
+/// A right-handed rotation whose third column is the unit vector `z`. Deterministic; the tangent
+/// axes are otherwise arbitrary. Used for R_WC with z = outward object normal.
 inline Matrix3d RotationFromZ(const Vector3d& z) {
   const Vector3d helper = std::abs(z.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
   Matrix3d R;

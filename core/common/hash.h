@@ -1,13 +1,12 @@
 #pragma once
 
-/// The state hash: 64 bits over every number that can influence the future of a run. Not cryptographic;
-/// two runs that differ in one bit differ in the hash with overwhelming probability.
+/// The state hash: 64 bits over every number that can influence the future of a run. Not
+/// cryptographic; two runs that differ in one bit differ in the hash with overwhelming probability.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
-
-#include <Eigen/Core>
 
 namespace regrasp {
 
@@ -15,8 +14,7 @@ class StateHasher {
  public:
   /// Adds one number (integer, enum, bool, double), bit by bit. -0.0 and 0.0 differ.
   template <typename T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  void Add(T value) {
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void Add(T value) {
     std::uint64_t word = 0;
     static_assert(sizeof(T) <= sizeof(word));
     std::memcpy(&word, &value, sizeof(T));

@@ -17,7 +17,8 @@ inline constexpr int kMaxObjectContacts = 24;  ///< simultaneous contacts of the
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 /// One value per joint of one finger, root to tip.
 using FingerVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxFingerJoints, 1>;
-/// Translational Jacobian of a point on a fingertip: 3 x (joints of the finger), columns root to tip.
+/// Translational Jacobian of a point on a fingertip: 3 x (joints of the finger), columns root to
+/// tip.
 using FingerJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxFingerJoints>;
 
 }  // namespace regrasp

@@ -1,12 +1,11 @@
 #pragma once
 
-/// Seeded random numbers that are the same on every machine: xoshiro256++ seeded by SplitMix64, and a
-/// polar normal sampler of our own (std::normal_distribution differs between standard libraries).
-
-#include <cmath>
-#include <cstdint>
+/// Seeded random numbers that are the same on every machine: xoshiro256++ seeded by SplitMix64, and
+/// a polar normal sampler of our own (std::normal_distribution differs between standard libraries).
 
 #include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
 
 namespace regrasp {
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMarginFilter_s = 0.05;
 constexpr double kRecoverLimit_s = 2.0;
-constexpr double kRecovered = 0.5;  // of the limits at which a regrasp is broken off
+constexpr double kRecovered = 0.5;        // of the limits at which a regrasp is broken off
 constexpr double kSecondThought_s = 0.3;  // a refusal stands when the margin has been low so long
 constexpr double kFinish_s = 0.4;
 constexpr double kProgress = 0.02;   // rad: a cycle that turns the object less has not turned it

@@ -1,7 +1,7 @@
 #pragma once
 
-/// The hand as data: links, joints, fingers. Immutable once loaded. Nothing here knows which hand it is
-/// or how many fingers it has; `LoadHand` (urdf.h) makes one from files and checks it.
+/// The hand as data: links, joints, fingers. Immutable once loaded. Nothing here knows which hand
+/// it is or how many fingers it has; `LoadHand` (urdf.h) makes one from files and checks it.
 
 #include <string>
 #include <vector>
@@ -11,28 +11,29 @@
 
 namespace regrasp {
 
-/// Collision shape of a link, in the link frame. A capsule: all points within `radius` of the segment a-b
-/// (a == b makes a sphere); or a box.
+/// Collision shape of a link, in the link frame. A capsule: all points within `radius` of the
+/// segment a-b (a == b makes a sphere); or a box.
 struct Shape {
   enum class Kind { kCapsule, kBox };
   Kind kind = Kind::kCapsule;
-  Vector3d a_L = Vector3d::Zero();         ///< capsule segment start [m]
-  Vector3d b_L = Vector3d::Zero();         ///< capsule segment end [m]
-  double radius = 0;                       ///< capsule [m]
+  Vector3d a_L = Vector3d::Zero();           ///< capsule segment start [m]
+  Vector3d b_L = Vector3d::Zero();           ///< capsule segment end [m]
+  double radius = 0;                         ///< capsule [m]
   Isometry3d X_LB = Isometry3d::Identity();  ///< box centre frame
   Vector3d half_extents = Vector3d::Zero();  ///< box [m]
 };
 
 struct Link {
   std::string name;
-  int parent_joint = -1;                ///< the joint that moves it; -1 for the palm
-  double mass = 0;                      ///< [kg]
-  Vector3d p_LCom = Vector3d::Zero();   ///< centre of mass in the link frame [m]
-  Matrix3d I_LCom = Matrix3d::Zero();   ///< inertia about the centre of mass, link axes [kg m²]
+  int parent_joint = -1;               ///< the joint that moves it; -1 for the palm
+  double mass = 0;                     ///< [kg]
+  Vector3d p_LCom = Vector3d::Zero();  ///< centre of mass in the link frame [m]
+  Matrix3d I_LCom = Matrix3d::Zero();  ///< inertia about the centre of mass, link axes [kg m²]
   std::vector<Shape> shapes;
 };
 
-/// A revolute joint. The child link's frame has its origin at the joint: X_PL(q) = X_PJ * Rot(axis_J, q).
+/// A revolute joint. The child link's frame has its origin at the joint: X_PL(q) = X_PJ *
+/// Rot(axis_J, q).
 struct Joint {
   std::string name;
   int parent_link = -1;
@@ -42,16 +43,17 @@ struct Joint {
   double lower = 0, upper = 0;               ///< limits [rad], lower < upper
   double effort = 0;                         ///< largest torque of the drive [N m]
   double damping = 0;                        ///< viscous damping of joint and gear [N m s/rad]
-  double armature = 0;                       ///< inertia of the rotor reflected to the joint [kg m²]
+  double armature = 0;  ///< inertia of the rotor reflected to the joint [kg m²]
 };
 
 /// One finger: a chain from the palm to a tip.
 struct Finger {
-  std::string name;                ///< as users type it, e.g. "ring"
-  std::vector<int> joints;         ///< joint indices, root to tip
-  int tip_link = -1;               ///< the link that carries the fingertip
-  Vector3d p_LF = Vector3d::Zero();  ///< centre of the tip's rounding sphere in the tip link's frame [m]
-  double tip_radius = 0;           ///< [m]
+  std::string name;         ///< as users type it, e.g. "ring"
+  std::vector<int> joints;  ///< joint indices, root to tip
+  int tip_link = -1;        ///< the link that carries the fingertip
+  Vector3d p_LF =
+      Vector3d::Zero();   ///< centre of the tip's rounding sphere in the tip link's frame [m]
+  double tip_radius = 0;  ///< [m]
 };
 
 struct HandModel {

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Forward kinematics and Jacobians of the fingers. algorithm(model, data): the model never changes, the
-/// data is preallocated.
+/// Forward kinematics and Jacobians of the fingers. algorithm(model, data): the model never
+/// changes, the data is preallocated.
 
 #include <array>
 
@@ -13,9 +13,9 @@ namespace regrasp {
 
 /// What forward kinematics computes from joint angles.
 struct KinematicsData {
-  std::array<Isometry3d, kMaxLinks> X_WL{};      ///< pose of every link
-  std::array<Vector3d, kMaxJoints> axis_W{};     ///< unit axis of every joint
-  std::array<Vector3d, kMaxJoints> p_WJ{};       ///< a point on the axis of every joint: its origin [m]
+  std::array<Isometry3d, kMaxLinks> X_WL{};   ///< pose of every link
+  std::array<Vector3d, kMaxJoints> axis_W{};  ///< unit axis of every joint
+  std::array<Vector3d, kMaxJoints> p_WJ{};  ///< a point on the axis of every joint: its origin [m]
 };
 
 /// Fills `data` for the joint angles `q` [rad, model order].
@@ -24,8 +24,8 @@ void ForwardKinematics(const HandModel& model, const JointVector& q, KinematicsD
 /// Centre of the fingertip's rounding sphere in W [m].
 Vector3d FingertipCentre(const HandModel& model, const KinematicsData& data, int finger);
 
-/// Translational Jacobian of the point `p_WQ` [m] that moves with the finger's tip link: 3 x n, columns
-/// root to tip: v_WQ = J qdot_finger, [m/s] per [rad/s].
+/// Translational Jacobian of the point `p_WQ` [m] that moves with the finger's tip link: 3 x n,
+/// columns root to tip: v_WQ = J qdot_finger, [m/s] per [rad/s].
 FingerJacobian PointJacobian(const HandModel& model, const KinematicsData& data, int finger,
                              const Vector3d& p_WQ);
 

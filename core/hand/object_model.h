@@ -19,9 +19,10 @@ struct ObjectModel {
   std::vector<Vector3d> vertices_O;          ///< mesh [m]
   std::vector<Eigen::Vector3i> triangles;    ///< mesh, counter-clockwise seen from outside
   double mass = 0.08;                        ///< [kg]
-  Matrix3d I_OCom = Matrix3d::Zero();        ///< inertia about the origin, which is the centre of mass [kg m²]
-  double friction = 0.8;                     ///< Coulomb coefficient of every contact, (0, 1]
-  double bounding_radius = 0.025;            ///< farthest surface point from the origin [m]
+  Matrix3d I_OCom =
+      Matrix3d::Zero();   ///< inertia about the origin, which is the centre of mass [kg m²]
+  double friction = 0.8;  ///< Coulomb coefficient of every contact, (0, 1]
+  double bounding_radius = 0.025;  ///< farthest surface point from the origin [m]
 };
 
 }  // namespace regrasp

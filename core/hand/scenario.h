@@ -1,7 +1,7 @@
 #pragma once
 
-/// A scenario: which hand, which object, where they start. Read from TOML; everything that is specific
-/// to one hand and is not in its URDF stands here.
+/// A scenario: which hand, which object, where they start. Read from TOML; everything that is
+/// specific to one hand and is not in its URDF stands here.
 
 #include <filesystem>
 #include <string>
@@ -17,11 +17,11 @@ namespace regrasp {
 
 struct Scenario {
   std::string name;
-  std::string hand;                          ///< name of the hand model
-  std::string object;                        ///< name of the default object model
-  JointVector q_preshape;                    ///< open hand from which `grasp` closes [rad]
-  JointVector q_closed;                      ///< `grasp` moves joints from q_preshape towards this [rad]
-  Isometry3d X_WO = Isometry3d::Identity();  ///< where the stand-in presents the object
+  std::string hand;        ///< name of the hand model
+  std::string object;      ///< name of the default object model
+  JointVector q_preshape;  ///< open hand from which `grasp` closes [rad]
+  JointVector q_closed;    ///< `grasp` moves joints from q_preshape towards this [rad]
+  Isometry3d X_WO = Isometry3d::Identity();    ///< where the stand-in presents the object
   Vector3d gravity_W = Vector3d(0, 0, -9.81);  ///< [m/s²]
 };
 
@@ -31,13 +31,14 @@ struct LoadedScenario {
   ObjectModel object;
 };
 
-/// Directories that are searched for models, in order: `models_dir` if given, $REGRASP_MODELS_DIR, the
-/// source tree this was built from, the installed share/regrasp/models.
+/// Directories that are searched for models, in order: `models_dir` if given, $REGRASP_MODELS_DIR,
+/// the source tree this was built from, the installed share/regrasp/models.
 std::vector<std::filesystem::path> ModelSearchPath(const std::string& models_dir = "");
 
-/// Loads the scenario that belongs to a hand (`hand`: a name in the search path, or a .urdf file with a
-/// .toml of the same name beside it) with an object (a name, a .urdf file, or empty for the scenario's own).
-/// Throws ModelError; a name that is not found is answered with the names that are.
+/// Loads the scenario that belongs to a hand (`hand`: a name in the search path, or a .urdf file
+/// with a .toml of the same name beside it) with an object (a name, a .urdf file, or empty for the
+/// scenario's own). Throws ModelError; a name that is not found is answered with the names that
+/// are.
 LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
                             const std::vector<std::filesystem::path>& search_path);
 

@@ -10,15 +10,15 @@
 namespace regrasp {
 
 struct NoiseLevels {
-  double position_m = 0;             ///< contact position, per axis
-  double normal_rad = 0;             ///< contact normal, per tangent axis
-  double force_n = 0;                ///< normal force
-  double joint_rad = 0;              ///< joint angle
-  double object_position_m = 0;      ///< object position, per axis
-  double object_rotation_rad = 0;    ///< object orientation, per axis
-  double taxel_pitch_m = 0;          ///< > 0: contact position and normal snap to taxels this far apart
-  double object_rate_hz = 0;         ///< > 0: the object pose is sampled and held at this rate
-  int object_delay_frames = 0;       ///< frames at object_rate_hz by which the pose is late, 0 .. 7
+  double position_m = 0;           ///< contact position, per axis
+  double normal_rad = 0;           ///< contact normal, per tangent axis
+  double force_n = 0;              ///< normal force
+  double joint_rad = 0;            ///< joint angle
+  double object_position_m = 0;    ///< object position, per axis
+  double object_rotation_rad = 0;  ///< object orientation, per axis
+  double taxel_pitch_m = 0;     ///< > 0: contact position and normal snap to taxels this far apart
+  double object_rate_hz = 0;    ///< > 0: the object pose is sampled and held at this rate
+  int object_delay_frames = 0;  ///< frames at object_rate_hz by which the pose is late, 0 .. 7
   bool operator==(const NoiseLevels&) const = default;
 };
 

@@ -13,9 +13,10 @@ namespace regrasp {
 
 struct FingertipReading {
   bool in_contact = false;
-  Vector3d p_WC = Vector3d::Zero();       ///< contact position [m]; meaningless without contact
-  Vector3d normal_W = Vector3d::UnitZ();  ///< outward object normal, unit; meaningless without contact
-  double force = 0;                       ///< normal force, >= 0 [N]
+  Vector3d p_WC = Vector3d::Zero();  ///< contact position [m]; meaningless without contact
+  Vector3d normal_W =
+      Vector3d::UnitZ();  ///< outward object normal, unit; meaningless without contact
+  double force = 0;       ///< normal force, >= 0 [N]
 };
 
 struct SensorReading {

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Commands to a session. Fixed size, no text beyond names: made by the daemon's command table after
-/// validation, applied by the session at a tick boundary.
+/// Commands to a session. Fixed size, no text beyond names: made by the daemon's command table
+/// after validation, applied by the session at a tick boundary.
 
 #include <cstdint>
 #include <memory>
@@ -16,25 +16,35 @@
 namespace regrasp {
 
 enum class CommandType : std::uint8_t {
-  kGrasp, kRelease, kExplore, kRotate, kStop, kNoise, kPush, kParameter, kCancelJob, kReset,
+  kGrasp,
+  kRelease,
+  kExplore,
+  kRotate,
+  kStop,
+  kNoise,
+  kPush,
+  kParameter,
+  kCancelJob,
+  kReset,
 };
 
 struct Command {
   CommandType type = CommandType::kStop;
-  std::int64_t job = 0;            ///< id of the new job (grasp, release, explore, rotate), chosen by the caller; or the job to cancel
-  int finger = -1;                 ///< explore
+  std::int64_t job = 0;  ///< id of the new job (grasp, release, explore, rotate), chosen by the
+                         ///< caller; or the job to cancel
+  int finger = -1;       ///< explore
   Criterion criterion = Criterion::kManipulability;
   Estimator estimator = Estimator::kLeastSquares;
-  std::uint64_t seed = 0;          ///< explore: direction of the start gradient; reset: the run
-  int max_cycles = 0;              ///< explore: 0 = parameter exploration.max_cycles
-  bool continuous = false;         ///< rotate
-  double angle_rad = 0;            ///< rotate, signed
+  std::uint64_t seed = 0;   ///< explore: direction of the start gradient; reset: the run
+  int max_cycles = 0;       ///< explore: 0 = parameter exploration.max_cycles
+  bool continuous = false;  ///< rotate
+  double angle_rad = 0;     ///< rotate, signed
   Vector3d axis_W = Vector3d::UnitZ();  ///< rotate, unit
-  double speed_rad_s = 0;          ///< rotate: 0 = parameter gait.speed_rad_s
+  double speed_rad_s = 0;               ///< rotate: 0 = parameter gait.speed_rad_s
   NoiseLevels noise;
   Vector3d force_W = Vector3d::Zero();  ///< push [N]
-  double duration_s = 0;           ///< push
-  int parameter = -1;              ///< index into ParameterTable()
+  double duration_s = 0;                ///< push
+  int parameter = -1;                   ///< index into ParameterTable()
   Vector3d value = Vector3d::Zero();
   std::shared_ptr<const ObjectModel> object;  ///< reset: the new object, or null to keep it
 };

@@ -12,11 +12,18 @@ namespace regrasp {
 enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kStep };
 enum class JobState : std::uint8_t { kQueued, kRunning, kDone, kFailed, kCancelled };
 /// Why an exploration ended.
-enum class ExploreReason : std::uint8_t { kNone, kGradient, kMaxCycles, kContactLost, kDropped, kCancelled };
+enum class ExploreReason : std::uint8_t {
+  kNone,
+  kGradient,
+  kMaxCycles,
+  kContactLost,
+  kDropped,
+  kCancelled
+};
 
-std::string_view Name(JobMethod method);       ///< "grasp", ...
-std::string_view Name(JobState state);         ///< "queued", ...
-std::string_view Name(ExploreReason reason);   ///< "gradient", "max_cycles", ...; "" for kNone
+std::string_view Name(JobMethod method);      ///< "grasp", ...
+std::string_view Name(JobState state);        ///< "queued", ...
+std::string_view Name(ExploreReason reason);  ///< "gradient", "max_cycles", ...; "" for kNone
 
 struct ExploreResult {
   int finger = -1;
@@ -24,15 +31,16 @@ struct ExploreResult {
   Estimator estimator = Estimator::kLeastSquares;
   bool converged = false;
   ExploreReason reason = ExploreReason::kNone;
-  int cycles = 0;                  ///< i of Algorithm 1
-  double phi_initial = 0, phi_final = 0;            ///< as the controller saw it (see Objective)
-  double phi_true_initial = 0, phi_true_final = 0;  ///< noise-free, from the simulator, for judging only
-  double path_length_m = 0;        ///< of the true contact point over the object
+  int cycles = 0;                         ///< i of Algorithm 1
+  double phi_initial = 0, phi_final = 0;  ///< as the controller saw it (see Objective)
+  double phi_true_initial = 0,
+         phi_true_final = 0;  ///< noise-free, from the simulator, for judging only
+  double path_length_m = 0;   ///< of the true contact point over the object
   std::uint64_t seed = 0;
 };
 
 struct RotateResult {
-  double angle_rad = 0;            ///< signed, unwrapped, true object rotation about the axis
+  double angle_rad = 0;  ///< signed, unwrapped, true object rotation about the axis
   double turns = 0;
   int gait_cycles = 0;
   int regrasps = 0;
@@ -42,28 +50,28 @@ struct RotateResult {
   double sim_time_s = 0;
 };
 
-/// One regrasp of the finger gait, judged by the truth (noise-free phi; stability or manipulability,
-/// whichever was the objective).
+/// One regrasp of the finger gait, judged by the truth (noise-free phi; stability or
+/// manipulability, whichever was the objective).
 struct RegraspRecord {
   int finger = -1;
   Criterion criterion = Criterion::kManipulability;
-  bool on_stability = false;       ///< `switched`: stability was the objective at the end
+  bool on_stability = false;  ///< `switched`: stability was the objective at the end
   bool aborted = false;
-  double phi_before = 0;           ///< before the finger left
-  double phi_start = 0;            ///< where Algorithm 1 began; phi_before without exploration
-  double phi_after = 0;            ///< when the finger was back in the grasp
+  double phi_before = 0;  ///< before the finger left
+  double phi_start = 0;   ///< where Algorithm 1 began; phi_before without exploration
+  double phi_after = 0;   ///< when the finger was back in the grasp
 };
 
 struct JobRecord {
   std::int64_t id = 0;
   JobMethod method = JobMethod::kGrasp;
   JobState state = JobState::kQueued;
-  char error[160] = {};            ///< empty unless failed
-  double progress = 0;             ///< 0 .. 1
-  std::int64_t start_tick = -1;    ///< tick at which the command was applied
+  char error[160] = {};          ///< empty unless failed
+  double progress = 0;           ///< 0 .. 1
+  std::int64_t start_tick = -1;  ///< tick at which the command was applied
   std::int64_t end_tick = -1;
-  ExploreResult explore;           ///< method explore only
-  RotateResult rotate;             ///< method rotate only
+  ExploreResult explore;  ///< method explore only
+  RotateResult rotate;    ///< method rotate only
 };
 
 }  // namespace regrasp

@@ -5,80 +5,124 @@ namespace regrasp {
 
 std::string_view Name(JobMethod method) {
   switch (method) {
-    case JobMethod::kGrasp: return "grasp";
-    case JobMethod::kRelease: return "release";
-    case JobMethod::kExplore: return "explore";
-    case JobMethod::kRotate: return "rotate";
-    case JobMethod::kStep: return "step";
+    case JobMethod::kGrasp:
+      return "grasp";
+    case JobMethod::kRelease:
+      return "release";
+    case JobMethod::kExplore:
+      return "explore";
+    case JobMethod::kRotate:
+      return "rotate";
+    case JobMethod::kStep:
+      return "step";
   }
   return "";
 }
 
 std::string_view Name(JobState state) {
   switch (state) {
-    case JobState::kQueued: return "queued";
-    case JobState::kRunning: return "running";
-    case JobState::kDone: return "done";
-    case JobState::kFailed: return "failed";
-    case JobState::kCancelled: return "cancelled";
+    case JobState::kQueued:
+      return "queued";
+    case JobState::kRunning:
+      return "running";
+    case JobState::kDone:
+      return "done";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
   }
   return "";
 }
 
 std::string_view Name(ExploreReason reason) {
   switch (reason) {
-    case ExploreReason::kNone: return "";
-    case ExploreReason::kGradient: return "gradient";
-    case ExploreReason::kMaxCycles: return "max_cycles";
-    case ExploreReason::kContactLost: return "contact_lost";
-    case ExploreReason::kDropped: return "dropped";
-    case ExploreReason::kCancelled: return "cancelled";
+    case ExploreReason::kNone:
+      return "";
+    case ExploreReason::kGradient:
+      return "gradient";
+    case ExploreReason::kMaxCycles:
+      return "max_cycles";
+    case ExploreReason::kContactLost:
+      return "contact_lost";
+    case ExploreReason::kDropped:
+      return "dropped";
+    case ExploreReason::kCancelled:
+      return "cancelled";
   }
   return "";
 }
 
 std::string_view Name(SessionState state) {
   switch (state) {
-    case SessionState::kIdle: return "idle";
-    case SessionState::kGrasping: return "grasping";
-    case SessionState::kHolding: return "holding";
-    case SessionState::kExploring: return "exploring";
-    case SessionState::kRotating: return "rotating";
-    case SessionState::kDropped: return "dropped";
-    case SessionState::kFaulted: return "faulted";
+    case SessionState::kIdle:
+      return "idle";
+    case SessionState::kGrasping:
+      return "grasping";
+    case SessionState::kHolding:
+      return "holding";
+    case SessionState::kExploring:
+      return "exploring";
+    case SessionState::kRotating:
+      return "rotating";
+    case SessionState::kDropped:
+      return "dropped";
+    case SessionState::kFaulted:
+      return "faulted";
   }
   return "";
 }
 
 std::string_view Name(FingerRole role) {
   switch (role) {
-    case FingerRole::kFree: return "free";
-    case FingerRole::kHold: return "hold";
-    case FingerRole::kExplore: return "explore";
-    case FingerRole::kMove: return "move";
+    case FingerRole::kFree:
+      return "free";
+    case FingerRole::kHold:
+      return "hold";
+    case FingerRole::kExplore:
+      return "explore";
+    case FingerRole::kMove:
+      return "move";
   }
   return "";
 }
 
 std::string_view Name(EventKind kind) {
   switch (kind) {
-    case EventKind::kState: return "state";
-    case EventKind::kJobStarted: return "job_started";
-    case EventKind::kJobFinished: return "job_finished";
-    case EventKind::kContactLost: return "contact_lost";
-    case EventKind::kContactMade: return "contact_made";
-    case EventKind::kCriterion: return "criterion";
-    case EventKind::kDropped: return "dropped";
-    case EventKind::kFault: return "fault";
-    case EventKind::kGaitPhase: return "gait_phase";
-    case EventKind::kRefused: return "refused";
-    case EventKind::kSlip: return "slip";
-    case EventKind::kNoise: return "noise";
-    case EventKind::kParameter: return "parameter";
-    case EventKind::kPush: return "push";
-    case EventKind::kReset: return "reset";
-    case EventKind::kStandIn: return "stand_in";
-    case EventKind::kRegrasp: return "regrasp";
+    case EventKind::kState:
+      return "state";
+    case EventKind::kJobStarted:
+      return "job_started";
+    case EventKind::kJobFinished:
+      return "job_finished";
+    case EventKind::kContactLost:
+      return "contact_lost";
+    case EventKind::kContactMade:
+      return "contact_made";
+    case EventKind::kCriterion:
+      return "criterion";
+    case EventKind::kDropped:
+      return "dropped";
+    case EventKind::kFault:
+      return "fault";
+    case EventKind::kGaitPhase:
+      return "gait_phase";
+    case EventKind::kRefused:
+      return "refused";
+    case EventKind::kSlip:
+      return "slip";
+    case EventKind::kNoise:
+      return "noise";
+    case EventKind::kParameter:
+      return "parameter";
+    case EventKind::kPush:
+      return "push";
+    case EventKind::kReset:
+      return "reset";
+    case EventKind::kStandIn:
+      return "stand_in";
+    case EventKind::kRegrasp:
+      return "regrasp";
   }
   return "";
 }

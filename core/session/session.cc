@@ -20,10 +20,10 @@ namespace {
 
 constexpr std::uint64_t kStartStream = 1000;  // random stream of the start posture
 constexpr std::size_t kMaxPending = 64;
-constexpr int kJudgeInterval = 10;            // ticks between looks at the truth
-constexpr double kDropContactTime_s = 0.25;   // fewer than two contacts for so long: dropped
+constexpr int kJudgeInterval = 10;           // ticks between looks at the truth
+constexpr double kDropContactTime_s = 0.25;  // fewer than two contacts for so long: dropped
 constexpr double kReleaseTime_s = 0.5;
-constexpr double kReleasePull_n = 12.0;       // lets go at once, so that no finger drags on the object
+constexpr double kReleasePull_n = 12.0;  // lets go at once, so that no finger drags on the object
 constexpr double kReleasePullTime_s = 0.01;
 
 /// Filters off: turns noise-free readings into the truth in the controller's own terms.
@@ -116,7 +116,8 @@ struct Session::Impl {
     Build(config.seed);
   }
 
-  // ---- construction ---------------------------------------------------------------------------------
+  // ---- construction
+  // ---------------------------------------------------------------------------------
   void Build(std::uint64_t new_seed) {
     seed = new_seed;
     RandomStream start(seed, kStartStream);
@@ -163,8 +164,10 @@ struct Session::Impl {
     Sense();
   }
 
-  /// Moves each fingertip's way in by start.displacement_m, along the surface in a random direction.
-  void Displace(const Vector3d& p_WO, RandomStream* random, std::initializer_list<JointVector*> postures) {
+  /// Moves each fingertip's way in by start.displacement_m, along the surface in a random
+  /// direction.
+  void Displace(const Vector3d& p_WO, RandomStream* random,
+                std::initializer_list<JointVector*> postures) {
     for (int i = 0; i < hand.num_fingers(); ++i) {
       const Vector3d direction = random->Normal3();
       if (parameters.start.displacement_m == 0) continue;
@@ -172,8 +175,9 @@ struct Session::Impl {
         KinematicsData data;
         ForwardKinematics(hand, *q, &data);
         const Vector3d tip = FingertipCentre(hand, data, i);
-        const Vector3d target = tip + parameters.start.displacement_m *
-                                          TangentPart(direction, (tip - p_WO).normalized()).normalized();
+        const Vector3d target =
+            tip + parameters.start.displacement_m *
+                      TangentPart(direction, (tip - p_WO).normalized()).normalized();
         MoveTip(i, target, q);
       }
     }
@@ -214,7 +218,8 @@ struct Session::Impl {
     }
   }
 
-  // ---- events and jobs ------------------------------------------------------------------------------
+  // ---- events and jobs
+  // ------------------------------------------------------------------------------
   template <typename... Args>
   void Emit(EventKind kind, int finger, double value, const char* format, Args... args) {
     Event event;
@@ -250,14 +255,16 @@ struct Session::Impl {
     job.end_tick = tick;
     if (end == JobState::kDone) job.progress = 1;
     std::snprintf(job.error, sizeof(job.error), "%s", error);
-    Emit(EventKind::kJobFinished, job.explore.finger, static_cast<double>(job.id), "job %lld: %s%s%s",
-         static_cast<long long>(job.id), Name(end).data(), *error ? ": " : "", error);
+    Emit(EventKind::kJobFinished, job.explore.finger, static_cast<double>(job.id),
+         "job %lld: %s%s%s", static_cast<long long>(job.id), Name(end).data(), *error ? ": " : "",
+         error);
     finished.push_back(job);
   }
 
   Verdict Refuse(const Command& command, const Verdict& verdict) {
-    const bool makes_job = command.type == CommandType::kGrasp || command.type == CommandType::kRelease ||
-                           command.type == CommandType::kExplore || command.type == CommandType::kRotate;
+    const bool makes_job =
+        command.type == CommandType::kGrasp || command.type == CommandType::kRelease ||
+        command.type == CommandType::kExplore || command.type == CommandType::kRotate;
     if (makes_job) {
       JobRecord refused;
       refused.id = command.job;
@@ -275,22 +282,27 @@ struct Session::Impl {
 
   static JobMethod MethodOf(CommandType type) {
     switch (type) {
-      case CommandType::kRelease: return JobMethod::kRelease;
-      case CommandType::kExplore: return JobMethod::kExplore;
-      case CommandType::kRotate: return JobMethod::kRotate;
-      default: return JobMethod::kGrasp;
+      case CommandType::kRelease:
+        return JobMethod::kRelease;
+      case CommandType::kExplore:
+        return JobMethod::kExplore;
+      case CommandType::kRotate:
+        return JobMethod::kRotate;
+      default:
+        return JobMethod::kGrasp;
     }
   }
 
-  // ---- commands -------------------------------------------------------------------------------------
+  // ---- commands
+  // -------------------------------------------------------------------------------------
   Verdict Apply(const Command& command) {
     const Verdict verdict = Check(command.type, state, job_running());
     if (verdict.kind != Verdict::Kind::kAllowed) return Refuse(command, verdict);
     switch (command.type) {
       case CommandType::kGrasp:
         if (!world->stand_in())
-          return Refuse(command, {Verdict::Kind::kBadState, "the object is not presented to the hand",
-                                  "regrasp reset"});
+          return Refuse(command, {Verdict::Kind::kBadState,
+                                  "the object is not presented to the hand", "regrasp reset"});
         StartJob(command, JobMethod::kGrasp);
         grasp.Start(estimator.estimate());
         Enter(SessionState::kGrasping);
@@ -355,7 +367,8 @@ struct Session::Impl {
     world->SetFriction(parameters.object.friction);
     world->SetMass(parameters.object.mass_kg);
     world->SetGravity(parameters.gravity_W);
-    Emit(EventKind::kParameter, -1, command.value[0], "%s = %.6g", info.name.data(), command.value[0]);
+    Emit(EventKind::kParameter, -1, command.value[0], "%s = %.6g", info.name.data(),
+         command.value[0]);
   }
 
   void StopJob() {
@@ -382,13 +395,16 @@ struct Session::Impl {
     }
   }
 
-  // ---- one tick -------------------------------------------------------------------------------------
+  // ---- one tick
+  // -------------------------------------------------------------------------------------
   void Sense() {
     reading = &sensors->Read(tick, world->state());
     estimator.Update(*reading, parameters.control);
   }
 
-  void LookAtTruth() { judge.Update(judge_sensors->Read(tick, world->state()), Unfiltered(parameters.control)); }
+  void LookAtTruth() {
+    judge.Update(judge_sensors->Read(tick, world->state()), Unfiltered(parameters.control));
+  }
 
   unsigned GraspFingers() const {
     unsigned bits = 0;
@@ -409,9 +425,10 @@ struct Session::Impl {
   }
 
   void WatchDrop() {
-    const bool alone = state == SessionState::kHolding || state == SessionState::kExploring ||
-                       state == SessionState::kRotating ||
-                       (state == SessionState::kGrasping && grasp.phase() == GraspSequence::Phase::kAlone);
+    const bool alone =
+        state == SessionState::kHolding || state == SessionState::kExploring ||
+        state == SessionState::kRotating ||
+        (state == SessionState::kGrasping && grasp.phase() == GraspSequence::Phase::kAlone);
     if (!alone || release_tick >= 0) {
       drop_ticks = 0;
       return;
@@ -429,8 +446,8 @@ struct Session::Impl {
     if (state == SessionState::kRotating) job.rotate.dropped = true;
     exploration = FingerExploration();
     gait = FingerGait();
-    Emit(EventKind::kDropped, -1, distance, "dropped: object %.0f mm from its place, %d fingers touch",
-         distance * 1e3, touching);
+    Emit(EventKind::kDropped, -1, distance,
+         "dropped: object %.0f mm from its place, %d fingers touch", distance * 1e3, touching);
     FinishJob(JobState::kFailed, "the object was dropped");
     ToPosture(e.q);  // the hand stops where it is
     Enter(SessionState::kDropped);
@@ -452,8 +469,9 @@ struct Session::Impl {
 
   void UpdateExploration() {
     const bool was_on_stability = exploration.on_stability();
-    exploration.Update(hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
-                       monitor.load_margin_without(exploration.request().finger), dt, &controller, &tasks);
+    exploration.Update(
+        hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
+        monitor.load_margin_without(exploration.request().finger), dt, &controller, &tasks);
     const int finger = exploration.request().finger;
     if (exploration.on_stability() != was_on_stability)
       Emit(EventKind::kCriterion, finger, exploration.on_stability(), "objective: %s",
@@ -467,17 +485,25 @@ struct Session::Impl {
     if (exploration.phase() == FingerExploration::Phase::kSlide && tick % kJudgeInterval == 0) {
       job.explore.path_length_m += (truth.p_WC - p_path).norm();
       p_path = truth.p_WC;
-      const double limit = job.explore.cycles > 0 ? job.explore.cycles : parameters.exploration.max_cycles;
+      const double limit =
+          job.explore.cycles > 0 ? job.explore.cycles : parameters.exploration.max_cycles;
       job.progress = std::min(0.99, exploration.cycles() / limit);
     }
     if (exploration.slide_ended()) {
       JudgeExplorationEnd();
       job.explore.phi_final = exploration.phi_final();
       switch (exploration.end()) {
-        case FingerExploration::End::kGradient: job.explore.reason = ExploreReason::kGradient; break;
-        case FingerExploration::End::kMaxCycles: job.explore.reason = ExploreReason::kMaxCycles; break;
-        case FingerExploration::End::kContactLost: job.explore.reason = ExploreReason::kContactLost; break;
-        case FingerExploration::End::kNone: break;  // stopped: cancelled
+        case FingerExploration::End::kGradient:
+          job.explore.reason = ExploreReason::kGradient;
+          break;
+        case FingerExploration::End::kMaxCycles:
+          job.explore.reason = ExploreReason::kMaxCycles;
+          break;
+        case FingerExploration::End::kContactLost:
+          job.explore.reason = ExploreReason::kContactLost;
+          break;
+        case FingerExploration::End::kNone:
+          break;  // stopped: cancelled
       }
       job.explore.converged = job.explore.reason == ExploreReason::kGradient;
     }
@@ -494,7 +520,8 @@ struct Session::Impl {
     Enter(SessionState::kHolding);
   }
 
-  // ---- rotation -------------------------------------------------------------------------------------
+  // ---- rotation
+  // -------------------------------------------------------------------------------------
   void StartRotation(const Command& command) {
     FingerGait::Request request;
     request.angle_rad = command.angle_rad;
@@ -541,8 +568,8 @@ struct Session::Impl {
     const FingerGait::Happened& happened = gait.happened();
     if (happened.refused_finger >= 0)
       Emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin,
-           "%s may not leave: load margin %.3f N without it", hand.fingers[happened.refused_finger].name.c_str(),
-           happened.refused_margin);
+           "%s may not leave: load margin %.3f N without it",
+           hand.fingers[happened.refused_finger].name.c_str(), happened.refused_margin);
     if (happened.aborted)
       Emit(EventKind::kSlip, gait.regrasp().request().finger, happened.error_position,
            "regrasp broken off: object %.1f mm, %.0f deg off", happened.error_position * 1e3,
@@ -571,15 +598,18 @@ struct Session::Impl {
       Emit(EventKind::kGaitPhase, finger, static_cast<double>(gait.phase()), "%s: %s",
            hand.fingers[finger].name.c_str(), Name(gait.regrasp().phase()).data());
     else
-      Emit(EventKind::kGaitPhase, -1, static_cast<double>(gait.phase()), "%s", Name(gait.phase()).data());
+      Emit(EventKind::kGaitPhase, -1, static_cast<double>(gait.phase()), "%s",
+           Name(gait.phase()).data());
   }
 
   void UpdateRotation() {
     FingerGait::Margins margins;
     margins.all = monitor.stability().load_margin;
-    for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
-    motion = gait.Update(hand, estimator.estimate(), margins, parameters.gravity_W, parameters.control,
-                         parameters.exploration, parameters.gait, dt, &controller, &tasks);
+    for (int i = 0; i < hand.num_fingers(); ++i)
+      margins.without[i] = monitor.load_margin_without(i);
+    motion =
+        gait.Update(hand, estimator.estimate(), margins, parameters.gravity_W, parameters.control,
+                    parameters.exploration, parameters.gait, dt, &controller, &tasks);
     JudgeRotation();
     ReportGait();
     if (gait.active()) return;
@@ -592,8 +622,8 @@ struct Session::Impl {
   }
 
   void UpdateGrasp() {
-    grasp.Update(estimator.estimate(), q_closed, parameters.gravity_W,
-                 parameters.control, &controller, &tasks);
+    grasp.Update(estimator.estimate(), q_closed, parameters.gravity_W, parameters.control,
+                 &controller, &tasks);
     job.progress = std::min(0.99, grasp.progress());
     if (world->stand_in() != grasp.needs_stand_in()) {
       world->SetStandIn(grasp.needs_stand_in());
@@ -678,17 +708,22 @@ struct Session::Impl {
     }
   }
 
-  // ---- outside --------------------------------------------------------------------------------------
+  // ---- outside
+  // --------------------------------------------------------------------------------------
   FingerRole RoleOf(int finger) const {
     switch (tasks[finger].mode) {
       case FingerMode::kHold:
-      case FingerMode::kTouch: return FingerRole::kHold;
+      case FingerMode::kTouch:
+        return FingerRole::kHold;
       case FingerMode::kSlide:
-        return state == SessionState::kExploring || gait.regrasp().phase() == Regrasp::Phase::kExplore
+        return state == SessionState::kExploring ||
+                       gait.regrasp().phase() == Regrasp::Phase::kExplore
                    ? FingerRole::kExplore
                    : FingerRole::kMove;
-      case FingerMode::kReach: return FingerRole::kMove;
-      case FingerMode::kPosture: return FingerRole::kFree;
+      case FingerMode::kReach:
+        return FingerRole::kMove;
+      case FingerMode::kPosture:
+        return FingerRole::kFree;
     }
     return FingerRole::kFree;
   }
@@ -758,7 +793,8 @@ struct Session::Impl {
       ff.true_p_WC = p / weight;
       ff.true_normal_W = n.normalized();
       ff.true_manipulability =
-          Manipulability(PointJacobian(hand, true_kinematics, i, ff.true_p_WC)) / kManipulabilityUnit;
+          Manipulability(PointJacobian(hand, true_kinematics, i, ff.true_p_WC)) /
+          kManipulabilityUnit;
     }
     f.exploration = ExplorationFrame();
     const auto phase = exploration.phase();

@@ -1,8 +1,9 @@
 #pragma once
 
-/// The whole product without threads, sockets or clocks: simulation, sensors, controller, exploration,
-/// gait. The daemon adds pacing and sockets; tests and batch runs call Tick() directly and see the same
-/// bits. Same build, configuration, seed and (tick, command) list give the same states.
+/// The whole product without threads, sockets or clocks: simulation, sensors, controller,
+/// exploration, gait. The daemon adds pacing and sockets; tests and batch runs call Tick() directly
+/// and see the same bits. Same build, configuration, seed and (tick, command) list give the same
+/// states.
 
 #include <cstdint>
 #include <memory>
@@ -26,12 +27,12 @@ struct SessionConfig {
   WorldConfig world;
 };
 
-/// Whether a command may be given in this state; used by the daemon before it accepts, and again by the
-/// session when it applies.
+/// Whether a command may be given in this state; used by the daemon before it accepts, and again by
+/// the session when it applies.
 struct Verdict {
   enum class Kind { kAllowed, kBusy, kBadState } kind = Kind::kAllowed;
-  const char* reason = "";         ///< cause, lower case, no full stop
-  const char* hint = "";           ///< the next command to try
+  const char* reason = "";  ///< cause, lower case, no full stop
+  const char* hint = "";    ///< the next command to try
 };
 Verdict Check(CommandType type, SessionState state, bool job_running);
 
@@ -41,11 +42,12 @@ class Session {
   explicit Session(SessionConfig config);
   ~Session();
 
-  /// Applies a command before the next tick. A refused job command becomes a failed job whose error says
-  /// why; other refused commands change nothing. Returns the verdict.
+  /// Applies a command before the next tick. A refused job command becomes a failed job whose error
+  /// says why; other refused commands change nothing. Returns the verdict.
   Verdict Apply(const Command& command);
 
-  /// One dt: sense -> kinematics -> quality -> gait -> exploration | manipulation -> contact forces (QP)
+  /// One dt: sense -> kinematics -> quality -> gait -> exploration | manipulation -> contact forces
+  /// (QP)
   /// -> joint torques -> step world. Never throws, allocates, locks, logs or reads a clock (unless
   /// MeasureStages is on). In state faulted only the tick count advances.
   void Tick();
@@ -53,7 +55,7 @@ class Session {
   std::int64_t tick() const;
   SessionState state() const;
   bool job_running() const;
-  const SessionConfig& config() const;       ///< as constructed; live values are in parameters()
+  const SessionConfig& config() const;  ///< as constructed; live values are in parameters()
   const Parameters& parameters() const;
   const NoiseLevels& noise() const;
   std::uint64_t seed() const;
@@ -63,14 +65,16 @@ class Session {
   void Snapshot(Frame* frame, bool with_hash) const;
   /// 64-bit hash over world, sensors and controller.
   std::uint64_t StateHash() const;
-  /// Events since the last call, oldest first; at most 64 are kept per call, older ones are dropped.
-  /// The span is valid until the next Tick() or Apply().
+  /// Events since the last call, oldest first; at most 64 are kept per call, older ones are
+  /// dropped. The span is valid until the next Tick() or Apply().
   std::span<const Event> TakeEvents();
   /// Jobs that ended since the last call, oldest first; same rules.
   std::span<const JobRecord> TakeFinishedJobs();
 
   /// Seconds of the last tick by stage; zeros unless on.
-  struct StageTimes { double sense_s = 0, control_s = 0, collide_s = 0, step_s = 0; };
+  struct StageTimes {
+    double sense_s = 0, control_s = 0, collide_s = 0, step_s = 0;
+  };
   void MeasureStages(bool on);
   StageTimes stage_times() const;
 

@@ -300,8 +300,8 @@ Vector3d World::Impl::Preload(const ObjectHit& hit) const {
 }
 
 // With the fast stepper most of each contact's last force goes in as an external force, and the
-// solver finds the rest, still bounded by "pushes only" and by the friction pyramid: so the total stays
-// inside the pyramid.
+// solver finds the rest, still bounded by "pushes only" and by the friction pyramid: so the total
+// stays inside the pyramid.
 void World::Impl::MakeContacts() {
   dJointGroupEmpty(contact_group);
   collider->Collide(&object_hits, &link_hits);

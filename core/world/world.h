@@ -1,10 +1,11 @@
 #pragma once
 
-/// The physical truth: hand and object simulated with ODE. Only the session, the sensors and the judges
-/// (job records, pictures, tests) may include this file; the controller's libraries do not link it.
+/// The physical truth: hand and object simulated with ODE. Only the session, the sensors and the
+/// judges (job records, pictures, tests) may include this file; the controller's libraries do not
+/// link it.
 ///
-/// Honest physics: outside the stand-in (SetStandIn, on only before a grasp is complete) and a user's
-/// push (SetPush) nothing but contact friction and gravity acts on the object.
+/// Honest physics: outside the stand-in (SetStandIn, on only before a grasp is complete) and a
+/// user's push (SetPush) nothing but contact friction and gravity acts on the object.
 
 #include <memory>
 
@@ -23,40 +24,42 @@ enum class Stepper {
 };
 
 struct WorldConfig {
-  double dt = 1e-3;                   ///< step [s]
+  double dt = 1e-3;  ///< step [s]
   Stepper stepper = Stepper::kFast;
-  int iterations = 12;                ///< QuickStep iterations, at least 10 (why: docs/world.md)
-  double contact_stiffness = 4000;    ///< [N/m]
-  double contact_damping = 8;         ///< [N s/m]
-  double over_relaxation = 1.3;       ///< QuickStep's SOR parameter
-  double joint_erp = 0.5;             ///< share of a joint's position error removed per step
-  double joint_cfm = 1e-10;           ///< ODE's softness of the joint and friction rows [m/(N s)]
-  double warm_start = 1.0;            ///< QuickStep: share of the last joint forces to start from, 0 to 1
-  double contact_warm_start = 0.98;   ///< QuickStep: share of a contact's last force to start from, 0 to 0.98
-  bool merge_universal = true;        ///< perpendicular joint pairs sharing an anchor become one universal joint
+  int iterations = 12;              ///< QuickStep iterations, at least 10 (why: docs/world.md)
+  double contact_stiffness = 4000;  ///< [N/m]
+  double contact_damping = 8;       ///< [N s/m]
+  double over_relaxation = 1.3;     ///< QuickStep's SOR parameter
+  double joint_erp = 0.5;           ///< share of a joint's position error removed per step
+  double joint_cfm = 1e-10;         ///< ODE's softness of the joint and friction rows [m/(N s)]
+  double warm_start = 1.0;  ///< QuickStep: share of the last joint forces to start from, 0 to 1
+  double contact_warm_start =
+      0.98;  ///< QuickStep: share of a contact's last force to start from, 0 to 0.98
+  bool merge_universal =
+      true;  ///< perpendicular joint pairs sharing an anchor become one universal joint
 };
 
 /// One contact of the object, with whatever it touches.
 struct ObjectContact {
-  int link = -1;                            ///< link of the hand
-  int finger = -1;                          ///< finger whose tip link this is, -1 for any other link
-  Vector3d p_WC = Vector3d::Zero();         ///< [m]
-  Vector3d normal_W = Vector3d::UnitZ();    ///< outward normal of the object
-  Vector3d force_W = Vector3d::Zero();      ///< on the object, of the last step [N]
-  double depth = 0;                         ///< penetration [m]
+  int link = -1;                          ///< link of the hand
+  int finger = -1;                        ///< finger whose tip link this is, -1 for any other link
+  Vector3d p_WC = Vector3d::Zero();       ///< [m]
+  Vector3d normal_W = Vector3d::UnitZ();  ///< outward normal of the object
+  Vector3d force_W = Vector3d::Zero();    ///< on the object, of the last step [N]
+  double depth = 0;                       ///< penetration [m]
 };
 
 /// Everything the simulator knows after a step.
 struct WorldState {
-  JointVector q;                                  ///< joint angles [rad]
-  JointVector qdot;                               ///< joint rates [rad/s]
-  JointVector torque;                             ///< torques applied by the drives, after the effort limit [N m]
-  Vector3d p_WO = Vector3d::Zero();               ///< [m]
+  JointVector q;       ///< joint angles [rad]
+  JointVector qdot;    ///< joint rates [rad/s]
+  JointVector torque;  ///< torques applied by the drives, after the effort limit [N m]
+  Vector3d p_WO = Vector3d::Zero();  ///< [m]
   Quaterniond q_WO = Quaterniond::Identity();
-  Vector3d v_WO = Vector3d::Zero();               ///< [m/s]
-  Vector3d w_WO = Vector3d::Zero();               ///< [rad/s]
+  Vector3d v_WO = Vector3d::Zero();  ///< [m/s]
+  Vector3d w_WO = Vector3d::Zero();  ///< [rad/s]
   FixedVector<ObjectContact, kMaxObjectContacts> contacts;
-  int link_link_contacts = 0;                     ///< contacts of hand links with each other
+  int link_link_contacts = 0;  ///< contacts of hand links with each other
 };
 
 enum class StepStatus { kOk, kFault };
@@ -71,8 +74,8 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// Drive torques for the coming steps [N m], clamped to each joint's effort. Viscous damping of the
-  /// model and the joint stops act in addition. Non-finite values are a fault at the next step.
+  /// Drive torques for the coming steps [N m], clamped to each joint's effort. Viscous damping of
+  /// the model and the joint stops act in addition. Non-finite values are a fault at the next step.
   void SetTorque(const JointVector& torque);
   /// The stand-in holds the object where it is now (true) or lets go (false).
   void SetStandIn(bool on);
@@ -83,8 +86,9 @@ class World {
   void SetFriction(double coefficient);        ///< (0, 1]
   void SetMass(double mass_kg);                ///< > 0; the inertia scales with it
 
-  /// Advances by dt. Never throws and never ends the process: a fault inside ODE makes this and every
-  /// later call return kFault, and only destroying the world helps. `fault_message()` tells the reason.
+  /// Advances by dt. Never throws and never ends the process: a fault inside ODE makes this and
+  /// every later call return kFault, and only destroying the world helps. `fault_message()` tells
+  /// the reason.
   StepStatus Step();
   const char* fault_message() const;
 
@@ -94,12 +98,14 @@ class World {
   double friction() const;
   const Vector3d& gravity_W() const;
 
-  /// Largest distance by which the two bodies of a joint have come apart at its anchor [m]: how well the
-  /// stepper keeps the hand together.
+  /// Largest distance by which the two bodies of a joint have come apart at its anchor [m]: how
+  /// well the stepper keeps the hand together.
   double JointDrift() const;
 
   /// Seconds the last step spent in collision detection and in the ODE stepper; 0 unless `on`.
-  struct StageTimes { double collide_s = 0, step_s = 0; };
+  struct StageTimes {
+    double collide_s = 0, step_s = 0;
+  };
   void MeasureStages(bool on);
   StageTimes stage_times() const;
 

@@ -146,8 +146,7 @@ TEST_F(Jobs, ARotationIsStoppedIntoAHoldAndItsRecordIsComplete) {
   Step(6000);
   ASSERT_EQ(Wait(grasp)["state"], "done");
   // Any length of the axis will do.
-  const Json job =
-      client->Result("rotate", {{"continuous", true}, {"axis", {0, 0, -1e-3}}})["job"];
+  const Json job = client->Result("rotate", {{"continuous", true}, {"axis", {0, 0, -1e-3}}})["job"];
   Step(3000);
   EXPECT_EQ(client->Result("status")["state"], "rotating");
   EXPECT_EQ(client->Error("rotate", {{"turns", 1}}), -32001);
