@@ -251,7 +251,7 @@ int Explore(const Options& o) {
               static_cast<double>(session.state() == SessionState::kDropped),
               (session.truth().p_WO - p0).norm() * 1e3};
     });
-    int rose = 0, failed = 0, dropped = 0, converged = 0;
+    int rose = 0, failed = 0, dropped = 0, converged = 0, refused = 0;
     std::vector<double> gain, cycles, moved;
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Row& r = rows[k];
@@ -267,6 +267,10 @@ int Explore(const Options& o) {
             Name(static_cast<ExploreReason>(static_cast<int>(r[1]))).data(), r[2], r[3], r[4], r[5],
             r[6], r[7]);
       }
+      if (r[0] == 0 && static_cast<ExploreReason>(static_cast<int>(r[1])) == ExploreReason::kNone) {
+        ++refused;  // the load margin without this finger is too small: the object stays held
+        continue;
+      }
       rose += r[3] > r[2] && r[6] == 0;
       dropped += r[6] != 0;
       converged += static_cast<ExploreReason>(static_cast<int>(r[1])) == ExploreReason::kGradient;
@@ -275,10 +279,11 @@ int Explore(const Options& o) {
       moved.push_back(r[7]);
     }
     std::printf(
-        "%-8s phi rose %2d/%-2zu  dropped %d  not grasped %d  converged %d  gain mean %+.1f %%  "
+        "%-8s phi rose %2d/%-2zu  refused %d  dropped %d  not grasped %d  converged %d  gain mean "
+        "%+.1f %%  "
         "cycles mean %.0f  object moved max %.2f mm\n",
-        name.c_str(), rose, rows.size(), dropped, failed, converged, 100 * Mean(gain), Mean(cycles),
-        Max(moved));
+        name.c_str(), rose, rows.size(), refused, dropped, failed, converged, 100 * Mean(gain),
+        Mean(cycles), Max(moved));
     std::fflush(stdout);
     total_rose += rose;
     total += static_cast<int>(rows.size());

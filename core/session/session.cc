@@ -293,6 +293,26 @@ struct Session::Impl {
     }
   }
 
+  /// A finger may leave the grasp only when it touches and the others keep a load margin without
+  /// it.
+  Verdict MayExplore(int finger) {
+    constexpr auto kRefused = Verdict::Kind::kBadState;
+    if (finger < 0 || finger >= hand.num_fingers())
+      return {kRefused, "no such finger", "regrasp contacts"};
+    const char* name = hand.fingers[finger].name.c_str();
+    const double margin = monitor.load_margin_without(finger);
+    if (!estimator.estimate().fingers[finger].in_contact) {
+      std::snprintf(refusal_text, sizeof(refusal_text), "%s does not touch the object", name);
+    } else if (margin < parameters.gait.margin_min) {
+      std::snprintf(refusal_text, sizeof(refusal_text),
+                    "%s may not leave: the load margin without it is %.2f N, below %.2f N", name,
+                    margin, parameters.gait.margin_min);
+    } else {
+      return {};
+    }
+    return {kRefused, refusal_text, "regrasp quality"};
+  }
+
   // ---- commands
   // -------------------------------------------------------------------------------------
   Verdict Apply(const Command& command) {
@@ -312,6 +332,9 @@ struct Session::Impl {
         release_tick = tick;
         break;
       case CommandType::kExplore:
+        if (const Verdict refusal = MayExplore(command.finger);
+            refusal.kind != Verdict::Kind::kAllowed)
+          return Refuse(command, refusal);
         StartJob(command, JobMethod::kExplore);
         job.explore.finger = command.finger;
         job.explore.criterion = command.criterion;
@@ -887,6 +910,7 @@ struct Session::Impl {
   std::int64_t tick = 0, push_until = -1, release_tick = -1;
   int drop_ticks = 0;
   SessionState state = SessionState::kIdle;
+  char refusal_text[128] = {};
   JobRecord job;
   Vector3d p_path = Vector3d::Zero();
   std::array<bool, kMaxFingers> was_in_contact{};
