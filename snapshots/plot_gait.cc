@@ -63,6 +63,29 @@ bool AnyValue(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
+/// The events without the contacts that a regrasping finger breaks and makes on purpose: the strips
+/// show those. A finger's regrasp is looked for this long around its event, the spacing of frames.
+constexpr double kAround = 0.25;  // [s]
+
+std::vector<Event> Unplanned(std::span<const Frame> frames, std::span<const Event> events) {
+  const double dt =
+      frames.back().tick > 0 ? frames.back().time_s / static_cast<double>(frames.back().tick) : 0;
+  std::vector<Event> kept;
+  for (const Event& event : events) {
+    const double t = static_cast<double>(event.tick) * dt;
+    const auto near =
+        std::lower_bound(frames.begin(), frames.end(), t - kAround,
+                         [](const Frame& frame, double value) { return frame.time_s < value; });
+    const bool contact =
+        event.kind == EventKind::kContactLost || event.kind == EventKind::kContactMade;
+    bool planned = false;
+    for (auto it = near; contact && it != frames.end() && it->time_s <= t + kAround; ++it)
+      planned = planned || (it->gait.active && it->gait.finger == event.finger);
+    if (!planned) kept.push_back(event);
+  }
+  return kept;
+}
+
 Axis AxisOver(std::initializer_list<std::span<const double>> columns, bool from_zero,
               std::string label) {
   Range range;
@@ -113,8 +136,7 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
          std::move(y)});
     return panels.back();
   };
-  const Panel upper =
-      rotates ? add(AxisOver({target, achieved}, true, "object angle [°]")) : Panel{};
+  const Panel upper = rotates ? add(AxisOver({target, achieved}, true, "angle [°]")) : Panel{};
   const Panel middle = explores ? add(AxisOver({phi}, true, "φ  [10⁻⁴ m³]")) : Panel{};
   const Panel lower = add(AxisOver({stability, threshold}, true, StabilityLabel(frames)));
 
@@ -135,9 +157,11 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
     DrawStateBackground(&canvas, panel, states);
     DrawGrid(&canvas, panel, &panel == &panels.back());
   }
-  const auto marks = DrawEvents(&canvas, panels, panels_top - 22, frames, events);
-  canvas.Text({left - 12, panels_top - 22}, "events",
-              {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
+  const auto marks =
+      DrawEvents(&canvas, panels, panels_top - 22, frames, Unplanned(frames, events));
+  if (!marks.empty())
+    canvas.Text({left - 12, panels_top - 22}, "events",
+                {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
   std::vector<LegendEntry> explorers;
   if (rotates) {
