@@ -20,11 +20,13 @@ struct ExplorationParameters {
   double normal_force = 0.4;       ///< of the exploring finger [N]
   double max_excursion = 0.008;    ///< from where it started [m]
   double limit_margin = 0.04;      ///< a joint this near to its limit is a wall [rad]
-  double clearance = 0.002;        ///< a link of another finger this near is a wall [m]
-  double dither_speed = 0.005;     ///< least_squares: circular dither [m/s]
-  double dither_hz = 1.5;          ///< least_squares: its frequency
-  double forgetting = 0.85;        ///< least_squares: weight of the past per update
-  double stability_weight = 1.0;   ///< combined: weight of stability in the linear sum
+  double least_facing =
+      -0.05;  ///< link axis . outward normal: above it the contact nears the side of the tip
+  double clearance = 0.002;       ///< a link of another finger this near is a wall [m]
+  double dither_speed = 0.005;    ///< least_squares: circular dither [m/s]
+  double dither_hz = 1.5;         ///< least_squares: its frequency
+  double forgetting = 0.85;       ///< least_squares: weight of the past per update
+  double stability_weight = 1.0;  ///< combined: weight of stability in the linear sum
   double transfer_s =
       0.25;  ///< load transfer before the finger starts to slide, and after it ends [s]
 };

@@ -5,8 +5,6 @@
 namespace regrasp {
 namespace {
 
-constexpr double kLeastFacing = -0.05;
-
 /// A link's first capsule in W.
 struct Capsule {
   Vector3d a, b;
@@ -84,13 +82,13 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
     const Vector3d d = (own.b - own.a).normalized();
     const Vector3d& n = f.normal_W;
     const double facing = d.dot(n);
-    if (facing > kLeastFacing) {
+    if (facing > parameters.least_facing) {
       Vector3d rate = d / (estimate.object_scale + own.radius);
       for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));
         rate += estimate.kinematics.axis_W[model.joints[k]].cross(d).dot(n) * row;
       }
-      AddWall(rate, (facing - kLeastFacing) / rate.norm(), n, walls);
+      AddWall(rate, (facing - parameters.least_facing) / rate.norm(), n, walls);
     }
   }
   const auto Before = [&](int link) {

@@ -64,6 +64,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"exploration.forgetting", "", 0.01, 0.999, 1, "Weight of the past per update (least_squares).", kMeasured, [](P& p) { return &p.exploration.forgetting; }},
   {"exploration.gradient_max", "1/m", 1, 1000, 1, "Line 7: cap of the gradient norm.", kMeasured, [](P& p) { return &p.exploration.gradient_max; }},
   {"exploration.clearance", "m", 0, 0.02, 1, "An exploring finger goes no nearer to a link of another finger.", kOurs, [](P& p) { return &p.exploration.clearance; }},
+  {"exploration.least_facing", "", -1, 1, 1, "An exploring finger keeps its link axis times the outward normal below this, so that the contact stays on the round tip; 1 turns this off.", kMeasured, [](P& p) { return &p.exploration.least_facing; }},
   {"exploration.limit_margin", "rad", 0, 0.5, 1, "An exploring finger goes no nearer to a joint limit.", kOurs, [](P& p) { return &p.exploration.limit_margin; }},
   {"exploration.lambda", "", 0, 0.999, 1, "Line 8: weight of the past in the sliding mean.", kPaper, [](P& p) { return &p.exploration.lambda; }},
   {"exploration.max_cycles", "ticks", 1, 1e6, 1, "Line 3: N_max.", kMeasured, [](P& p) { return &p.exploration.max_cycles; }},

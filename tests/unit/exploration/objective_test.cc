@@ -67,7 +67,8 @@ class WallsTest : public ObjectiveTest {};
 // joint further out; on the other side of the limit's margin there is none.
 TEST_F(WallsTest, JointLimitsAreWalls) {
   ExplorationParameters parameters;
-  parameters.clearance = -1;  // other fingers apart
+  parameters.clearance = -1;    // other fingers apart
+  parameters.least_facing = 1;  // the end of the round tip apart
   FixedVector<Wall, 8> walls;
   int found = 0;
   for (int finger = 0; finger < hand_.num_fingers(); ++finger) {
