@@ -52,6 +52,7 @@ ControlLoop::ControlLoop(ControlConfig config)
       paused_(config_.paused) {
   commands_.reserve(512);
   unsent_jobs_.reserve(512);
+  Publish();  // the first frame is there before anybody can ask
   thread_ = std::thread([this] { Run(); });
 }
 

@@ -23,6 +23,7 @@ Service::Service(ServiceConfig config, Host* host)
   accepted.seed = session.seed;
   accepted.object = std::make_shared<const ObjectModel>(session.model.object);
   accepted.paused = config_.control.paused;
+  Drain();
 }
 
 Outcome Service::Call(const std::string& method, const JsonIn& params, Client* client) {
