@@ -14,21 +14,6 @@ void CopyText(char (&target)[N], const char* text) {
   std::snprintf(target, N, "%s", text);
 }
 
-std::optional<JobMethod> MethodOf(CommandType type) {
-  switch (type) {
-    case CommandType::kGrasp:
-      return JobMethod::kGrasp;
-    case CommandType::kRelease:
-      return JobMethod::kRelease;
-    case CommandType::kExplore:
-      return JobMethod::kExplore;
-    case CommandType::kRotate:
-      return JobMethod::kRotate;
-    default:
-      return {};
-  }
-}
-
 }  // namespace
 
 void SetParameter(Parameters* parameters, const Command& command) {
@@ -162,7 +147,7 @@ void ControlLoop::Reset(const Command& command) {
     const Command& earlier = waiting.request.command;
     if (earlier.type == CommandType::kNoise) next.noise = earlier.noise;
     if (earlier.type == CommandType::kParameter) SetParameter(&next.parameters, earlier);
-    if (const auto method = MethodOf(earlier.type)) {
+    if (const auto method = JobMethodOf(earlier.type)) {
       JobRecord job;
       job.id = earlier.job;
       job.method = *method;

@@ -3,6 +3,7 @@
 /// Records of long-running work. Plain data of fixed size, so that they travel in frames.
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "core/session/command.h"
@@ -21,6 +22,8 @@ enum class ExploreReason : std::uint8_t {
   kCancelled
 };
 
+/// The job that a command starts, or nothing for a command that starts none.
+std::optional<JobMethod> JobMethodOf(CommandType type);
 std::string_view Name(JobMethod method);      ///< "grasp", ...
 std::string_view Name(JobState state);        ///< "queued", ...
 std::string_view Name(ExploreReason reason);  ///< "gradient", "max_cycles", ...; "" for kNone

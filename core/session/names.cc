@@ -3,6 +3,21 @@
 
 namespace regrasp {
 
+std::optional<JobMethod> JobMethodOf(CommandType type) {
+  switch (type) {
+    case CommandType::kGrasp:
+      return JobMethod::kGrasp;
+    case CommandType::kRelease:
+      return JobMethod::kRelease;
+    case CommandType::kExplore:
+      return JobMethod::kExplore;
+    case CommandType::kRotate:
+      return JobMethod::kRotate;
+    default:
+      return {};
+  }
+}
+
 std::string_view Name(JobMethod method) {
   switch (method) {
     case JobMethod::kGrasp:

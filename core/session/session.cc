@@ -262,13 +262,10 @@ struct Session::Impl {
   }
 
   Verdict Refuse(const Command& command, const Verdict& verdict) {
-    const bool makes_job =
-        command.type == CommandType::kGrasp || command.type == CommandType::kRelease ||
-        command.type == CommandType::kExplore || command.type == CommandType::kRotate;
-    if (makes_job) {
+    if (const auto method = JobMethodOf(command.type)) {
       JobRecord refused;
       refused.id = command.job;
-      refused.method = MethodOf(command.type);
+      refused.method = *method;
       refused.state = JobState::kFailed;
       refused.start_tick = refused.end_tick = tick;
       refused.explore.finger = command.finger;
@@ -278,19 +275,6 @@ struct Session::Impl {
     Emit(EventKind::kRefused, command.finger, static_cast<double>(command.job), "refused: %s",
          verdict.reason);
     return verdict;
-  }
-
-  static JobMethod MethodOf(CommandType type) {
-    switch (type) {
-      case CommandType::kRelease:
-        return JobMethod::kRelease;
-      case CommandType::kExplore:
-        return JobMethod::kExplore;
-      case CommandType::kRotate:
-        return JobMethod::kRotate;
-      default:
-        return JobMethod::kGrasp;
-    }
   }
 
   /// A finger may leave the grasp only when it touches and the others keep a load margin without
