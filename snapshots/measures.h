@@ -64,8 +64,7 @@ inline std::string StabilityLabel(std::span<const Frame> frames) {
       {&StabilityFrame::min_singular_value, "σ\u2098\u1d62\u2099(G)"},
       {&StabilityFrame::epsilon, "ε (Ferrari\u2013Canny)"},
       {&StabilityFrame::sqrt_det, "√det(G Gᵀ)"},
-      {&StabilityFrame::isotropy, "σ\u2098\u1d62\u2099/σ\u2098\u2090\u2093"},
-      {&StabilityFrame::volume, "hull volume"}};
+      {&StabilityFrame::isotropy, "σ\u2098\u1d62\u2099/σ\u2098\u2090\u2093"}};
   for (const Measure& measure : kMeasures) {
     bool same = true, seen = false;
     for (const Frame& frame : frames) {

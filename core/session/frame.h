@@ -52,7 +52,7 @@ struct FingerFrame {
 struct StabilityFrame {
   double active = 0;     ///< the measure selected by control.stability_measure
   double threshold = 0;  ///< below it, `switched` maximises stability instead of manipulability
-  double min_singular_value = 0, epsilon = 0, sqrt_det = 0, isotropy = 0, volume = 0;
+  double min_singular_value = 0, epsilon = 0, sqrt_det = 0, isotropy = 0;
   double load_margin = 0;  ///< rho of all fingers in contact [N]
 };
 

@@ -464,7 +464,7 @@ bool Finite(const Frame& f) {
     ok = ok && c.p_WC.allFinite() && c.normal_W.allFinite() && c.force_W.allFinite();
   const StabilityFrame& s = f.stability;
   for (const double x : {s.active, s.threshold, s.min_singular_value, s.epsilon, s.sqrt_det,
-                         s.isotropy, s.volume, f.exploration.phi, f.exploration.gradient_norm})
+                         s.isotropy, f.exploration.phi, f.exploration.gradient_norm})
     ok = ok && std::isfinite(x);
   return ok && !std::isnan(s.load_margin) && f.exploration.gradient_W.allFinite();
 }

@@ -132,7 +132,11 @@ TEST_F(Jobs, AnExplorationsRecordIsComplete) {
   EXPECT_EQ(record["seed"], 4);
   EXPECT_EQ(record["start_tick"], 6000);
   EXPECT_FALSE(record["reason"].is_null());
-  EXPECT_EQ(client->Result("quality")["fingers"].size(), 5u);
+  const Json quality = client->Result("quality");
+  EXPECT_EQ(quality["fingers"].size(), 5u);
+  for (const char* measure :
+       {"min_singular_value", "epsilon", "sqrt_det", "isotropy", "volume", "load_margin_n"})
+    EXPECT_GT(quality[measure], 0) << measure;  // five fingers hold: none may be an unset zero
   const Json truth = client->Result("truth");
   for (const Json& contact : truth["contacts"])
     for (const char* field : {"link", "finger", "p_WC_m", "normal_W", "force_W_n", "depth_m"})
