@@ -1,0 +1,145 @@
+#include <algorithm>
+
+#include "core/session/session_impl.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kReleaseTime_s = 0.5;
+constexpr double kReleasePull_n = 12.0;  // lets go at once, so that no finger drags on the object
+constexpr double kReleasePullTime_s = 0.01;
+
+}  // namespace
+
+unsigned Session::Impl::GraspFingers() const {
+  unsigned bits = 0;
+  for (int i = 0; i < hand.num_fingers(); ++i)
+    if (tasks[i].mode != FingerMode::kPosture) bits |= 1u << i;
+  return bits;
+}
+
+void Session::Impl::UpdateGrasp() {
+  grasp.Update(estimator.estimate(), q_closed, parameters.gravity_W, parameters.control,
+               &controller, &tasks);
+  job.progress = std::min(0.99, grasp.progress());
+  if (world->stand_in() != grasp.needs_stand_in()) {
+    world->SetStandIn(grasp.needs_stand_in());
+    Emit(EventKind::kStandIn, -1, world->stand_in(), "stand-in %s",
+         world->stand_in() ? "holds the object" : "let go");
+  }
+  if (grasp.phase() == GraspSequence::Phase::kDone) {
+    FinishJob(JobState::kDone, "");
+    Enter(SessionState::kHolding);
+  } else if (grasp.phase() == GraspSequence::Phase::kFailed) {
+    FinishJob(JobState::kFailed, "fewer than three fingers touched the object");
+    ToPosture(q_open);
+    Enter(SessionState::kIdle);
+  }
+}
+
+void Session::Impl::UpdateRelease() {
+  const double time = (tick - release_tick) * dt;
+  if (time == 0) ToPosture(q_open);
+  job.progress = std::min(0.99, time / kReleaseTime_s);
+  if (time < kReleaseTime_s) return;
+  release_tick = -1;
+  FinishJob(JobState::kDone, "");
+  Enter(SessionState::kIdle);
+}
+
+void Session::Impl::AddReleasePull() {
+  if (release_tick < 0 || (tick - release_tick) * dt >= kReleasePullTime_s) return;
+  for (int i = 0; i < hand.num_fingers(); ++i) {
+    const FingerEstimate& f = estimator.estimate().fingers[i];
+    if (!f.ever_in_contact) continue;
+    const FingerVector tau = f.J.transpose() * (kReleasePull_n * f.normal_W);
+    const auto& joints = hand.fingers[i].joints;
+    for (std::size_t k = 0; k < joints.size(); ++k) torque[joints[k]] += tau[k];
+  }
+}
+
+void Session::Impl::UpdateExploration() {
+  const bool was_on_stability = exploration.on_stability();
+  exploration.Update(
+      hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
+      monitor.load_margin_without(exploration.request().finger), dt, &controller, &tasks);
+  const int finger = exploration.request().finger;
+  if (exploration.on_stability() != was_on_stability)
+    Emit(EventKind::kCriterion, finger, exploration.on_stability(), "objective: %s",
+         exploration.on_stability() ? "stability" : "manipulability");
+  const FingerEstimate& truth = judge.estimate().fingers[finger];
+  if (exploration.slide_began()) {
+    job.explore.phi_initial = exploration.phi_initial();
+    job.explore.phi_true_initial = TruePhi();
+    p_path = truth.p_WC;
+  }
+  if (exploration.phase() == FingerExploration::Phase::kSlide && tick % kJudgeInterval == 0) {
+    job.explore.path_length_m += (truth.p_WC - p_path).norm();
+    p_path = truth.p_WC;
+    const double limit =
+        job.explore.cycles > 0 ? job.explore.cycles : parameters.exploration.max_cycles;
+    job.progress = std::min(0.99, exploration.cycles() / limit);
+  }
+  if (exploration.slide_ended()) {
+    JudgeExplorationEnd();
+    job.explore.phi_final = exploration.phi_final();
+    switch (exploration.end()) {
+      case FingerExploration::End::kGradient:
+        job.explore.reason = ExploreReason::kGradient;
+        break;
+      case FingerExploration::End::kMaxCycles:
+        job.explore.reason = ExploreReason::kMaxCycles;
+        break;
+      case FingerExploration::End::kContactLost:
+        job.explore.reason = ExploreReason::kContactLost;
+        break;
+      case FingerExploration::End::kNone:
+        break;  // stopped: cancelled
+    }
+    job.explore.converged = job.explore.reason == ExploreReason::kGradient;
+  }
+  if (exploration.phase() != FingerExploration::Phase::kDone) return;
+  exploration = FingerExploration();
+  const ExploreReason reason = job.explore.reason;
+  if (reason == ExploreReason::kCancelled) {
+    FinishJob(JobState::kCancelled, "");
+  } else if (reason == ExploreReason::kContactLost) {
+    FinishJob(JobState::kFailed, "the exploring finger lost contact");
+  } else {
+    FinishJob(JobState::kDone, "");
+  }
+  Enter(SessionState::kHolding);
+}
+
+void Session::Impl::StartRotation(const Command& command) {
+  FingerGait::Request request;
+  request.angle_rad = command.angle_rad;
+  request.continuous = command.continuous;
+  request.axis_W = command.axis_W.normalized();
+  request.speed_rad_s = command.speed_rad_s;
+  request.seed = seed;
+  gait.Start(request, hand, estimator.estimate(), controller.wrench(), GraspFingers());
+  q_WO_start = world->state().q_WO;
+  motion = ObjectMotion();
+  Enter(SessionState::kRotating);
+}
+
+void Session::Impl::UpdateRotation() {
+  FingerGait::Margins margins;
+  margins.all = monitor.stability().load_margin;
+  for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
+  motion =
+      gait.Update(hand, estimator.estimate(), margins, parameters.gravity_W, parameters.control,
+                  parameters.exploration, parameters.gait, dt, &controller, &tasks);
+  JudgeRotation();
+  ReportGait();
+  if (gait.active()) return;
+  if (gait.phase() == GaitPhase::kFailed) {
+    FinishJob(JobState::kFailed, gait.error());
+  } else {
+    FinishJob(gait.stopped() ? JobState::kCancelled : JobState::kDone, "");
+  }
+  Enter(SessionState::kHolding);
+}
+
+}  // namespace regrasp
