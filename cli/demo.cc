@@ -1,10 +1,6 @@
 #include "cli/demo.h"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +9,8 @@
 #include <numbers>
 #include <optional>
 
-#include "cli/daemon_process.h"
 #include "cli/jobs.h"
+#include "cli/private_daemon.h"
 
 namespace regrasp::cli {
 namespace {
@@ -33,39 +29,6 @@ constexpr double kAngleTolerance = 5;  // [deg]
 constexpr double kOffsetLimit = 5;     // of the object while it turns [mm]
 constexpr double kForceTolerance =
     0.02;  // of the weight: what the project promises for a hold at rest
-
-/// The demo's own daemon, in a directory of its own; stopped when the demo ends, however it ends.
-class PrivateDaemon {
- public:
-  explicit PrivateDaemon(const std::vector<std::string>& arguments) {
-    char name[] = "/tmp/regrasp-demo-XXXXXX";
-    if (::mkdtemp(name) == nullptr) throw CliError(kIo, "cannot make a directory in /tmp");
-    directory_ = name;
-    try {
-      started_ = StartDaemon(directory_ / "regrasp.sock", arguments, 20);
-    } catch (...) {
-      std::error_code ignored;
-      fs::remove_all(directory_, ignored);
-      throw;
-    }
-  }
-  ~PrivateDaemon() {
-    try {
-      StopDaemon(started_.socket, 5);
-    } catch (...) {
-      ::kill(started_.pid, SIGTERM);
-    }
-    std::error_code ignored;
-    fs::remove_all(directory_, ignored);
-  }
-  PrivateDaemon(const PrivateDaemon&) = delete;
-  PrivateDaemon& operator=(const PrivateDaemon&) = delete;
-  const std::string& socket() const { return started_.socket; }
-
- private:
-  fs::path directory_;
-  StartedDaemon started_;
-};
 
 /// One line of the final table.
 struct Claim {

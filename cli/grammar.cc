@@ -113,8 +113,8 @@ CommandSpec MethodCommand(std::string_view method, std::string group, Handler ru
 const std::vector<CommandSpec>& Commands() {
   static const std::vector<CommandSpec> kCommands = [] {
     std::vector<CommandSpec> all;
-    for (auto* group :
-         {RunCommands, ControlCommands, InspectCommands, ResultCommands, ToolCommands}) {
+    for (auto* group : {RunCommands, ControlCommands, InspectCommands, ResultCommands,
+                        ExperimentCommands, ToolCommands}) {
       for (auto& command : group()) all.push_back(std::move(command));
     }
     return all;

@@ -34,7 +34,8 @@ struct Arg {
   std::vector<std::string> values = {};  ///< the allowed words; empty: any
   std::string default_text = {};
   bool required = false;
-  bool wire = false;  ///< goes into the parameters of the method
+  bool wire = false;      ///< goes into the parameters of the method
+  bool repeated = false;  ///< may be given several times; the text has a line for each
 };
 
 /// What the user asked for.
@@ -78,6 +79,7 @@ std::vector<CommandSpec> RunCommands();
 std::vector<CommandSpec> ControlCommands();
 std::vector<CommandSpec> InspectCommands();
 std::vector<CommandSpec> ResultCommands();
+std::vector<CommandSpec> ExperimentCommands();
 std::vector<CommandSpec> ToolCommands();
 
 /// Commands whose words begin with `words` ("noise" -> noise show, noise set …); exact match first.

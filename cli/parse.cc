@@ -17,6 +17,8 @@
 namespace regrasp::cli {
 namespace {
 
+constexpr int kMaxRepeats = 10000;
+
 struct Given {
   const Arg* arg;
   std::string text;
@@ -36,6 +38,9 @@ void AddArg(CLI::App* app, Given* given) {
     given->option = app->add_flag(arg.flags, given->flag);
   } else {
     given->option = app->add_option(arg.flags.empty() ? arg.key : arg.flags, given->text);
+    if (arg.repeated) given->option->join('\n');
+    if (arg.repeated && arg.flags.empty())
+      given->option->expected(1, kMaxRepeats)->allow_extra_args();
   }
 }
 

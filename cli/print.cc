@@ -43,24 +43,24 @@ void Output::AddJson(const Json& value) {
   Line(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-void Output::AddCsv(const Json& row) {
+std::string CsvTable::Row(const Json& row) {
+  std::string text;
   const auto cells = Flatten(row);
-  if (csv_columns_.empty()) {
-    std::string header;
+  if (columns_.empty()) {
     for (const auto& [name, cell] : cells) {
-      csv_columns_.push_back(name);
-      if (!header.empty()) header += ',';
-      header += CsvCell(name);
+      columns_.push_back(name);
+      if (!text.empty()) text += ',';
+      text += CsvCell(name);
     }
-    Line(header);
+    text += '\n';
   }
-  for (std::size_t i = 0; i < csv_columns_.size(); ++i) {
-    if (i > 0) Add(",");
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (i > 0) text += ',';
     const auto cell = std::find_if(cells.begin(), cells.end(),
-                                   [&](const auto& item) { return item.first == csv_columns_[i]; });
-    if (cell != cells.end()) Add(CsvCell(cell->second));
+                                   [&](const auto& item) { return item.first == columns_[i]; });
+    if (cell != cells.end()) text += CsvCell(cell->second);
   }
-  Line();
+  return text + '\n';
 }
 
 void Output::Flush() {

@@ -14,6 +14,17 @@ namespace regrasp::cli {
 enum class Format { kHuman, kJson, kCsv };
 enum class Style { kPlain, kBold, kDim, kGood, kWarn, kBad };
 
+/// CSV (RFC 4180): nested objects become columns `a.b`, arrays of numbers `a.0`.
+class CsvTable {
+ public:
+  /// The row's line; before the first one the header line with the columns that this row has. Later
+  /// rows have the same columns.
+  std::string Row(const Json& row);
+
+ private:
+  std::vector<std::string> columns_;
+};
+
 /// Stdout.
 class Output {
  public:
@@ -28,9 +39,8 @@ class Output {
   void Line(std::string_view text = "") { (text_ += text) += '\n'; }
   /// Adds `value` as one line of JSON.
   void AddJson(const Json& value);
-  /// Adds CSV (RFC 4180): nested objects become columns `a.b`, arrays of numbers `a.0`. The header
-  /// line is written before the first row, and again never.
-  void AddCsv(const Json& row);
+  /// Adds a row of CSV, its header before the first one.
+  void AddCsv(const Json& row) { Add(csv_.Row(row)); }
   /// Writes everything to stdout. Throws CliError(kIo).
   void Flush();
 
@@ -49,7 +59,7 @@ class Output {
   Format format_;
   bool color_, utf8_;
   std::string text_;
-  std::vector<std::string> csv_columns_;
+  CsvTable csv_;
 };
 
 /// Aligned columns, two blanks apart. Cells may hold colour codes and UTF-8.

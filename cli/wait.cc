@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -12,12 +13,12 @@
 namespace regrasp::cli {
 namespace {
 
-volatile std::sig_atomic_t g_interrupted = 0;
+std::atomic<bool> g_interrupted = false;  // lock-free: set by the handler, read by every thread
 int g_depth = 0;
 sigset_t g_mask_before;
 struct sigaction g_int_before, g_term_before;
 
-void OnSignal(int) { g_interrupted = 1; }
+void OnSignal(int) { g_interrupted = true; }
 
 }  // namespace
 
@@ -49,7 +50,7 @@ Interruptible::~Interruptible() {
 }
 
 void CheckInterrupt() {
-  if (g_interrupted != 0) throw CliError(kInterrupted, "interrupted");
+  if (g_interrupted) throw CliError(kInterrupted, "interrupted");
 }
 
 bool WaitFor(int fd, short events, Clock::time_point deadline) {

@@ -1,0 +1,211 @@
+// Experiments: many trials with other seeds, on private daemons, and what they say together.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <thread>
+
+#include "cli/context.h"
+#include "cli/experiment/runner.h"
+#include "cli/experiment/stepped_daemon.h"
+#include "cli/experiment/summary.h"
+#include "cli/experiment/trial.h"
+#include "core/common/nearest_name.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGroup = "Results";
+constexpr double kMostSeeds = 1e6;
+
+/// What can only be known from a daemon: the fingers' names, and whether it takes the parameters.
+void Complete(Plan* plan) {
+  SteppedDaemon daemon(plan->DaemonArguments());
+  plan->version = Plain(daemon.Call("version").at("version"));
+  plan->build = DaemonBuild();
+  Prepare(&daemon, *plan);
+  if (plan->rotation()) return;
+  std::vector<std::string> fingers;
+  const Json contacts = daemon.Call("contacts");
+  for (const auto& [name, finger] : Named(contacts.at("fingers"), "finger"))
+    fingers.push_back(name);
+  if (plan->subjects == std::vector<std::string>{"all"}) {
+    plan->subjects = fingers;
+    return;
+  }
+  for (const auto& name : plan->subjects) {
+    if (std::find(fingers.begin(), fingers.end(), name) != fingers.end()) continue;
+    const auto nearest = NearestName(name, fingers);
+    throw CliError(kUsage,
+                   fmt::format("--finger '{}' is none of {}, all", name, fmt::join(fingers, ", ")),
+                   fmt::format("regrasp experiment {} --finger {} -o DIR", plan->experiment,
+                               nearest.empty() ? "all" : nearest));
+  }
+}
+
+void Print(Context& context, const Json& summary, const fs::path& directory) {
+  Json answer = summary;
+  answer["output_dir"] = fs::absolute(directory).string();
+  std::vector<Json> rows(summary.at("groups").begin(), summary.at("groups").end());
+  context.PrintRows(answer, rows, [&] {
+    Output& out = context.out();
+    out.Add(SummaryTable(out, summary));
+    out.Line();
+    out.Line("trials   " + (directory / "trials.csv").string());
+    out.Line("summary  " + (directory / "summary.json").string());
+    out.Line("picture  " + (directory / "summary.png").string());
+  });
+}
+
+ExitCode Experiment(Context& context, const Invocation& invocation) {
+  const Interruptible interruptible;
+  const std::string name = invocation.command->words.substr(std::string("experiment ").size());
+  Plan plan = PlanFromArguments(name, invocation);
+  Complete(&plan);
+  const fs::path directory = invocation.Text("output");
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int workers =
+      static_cast<int>(ParseNumber(invocation.Text("workers", std::to_string(cores)), "--workers"));
+  Store store(directory, plan);
+  try {
+    RunPlan(context, plan, workers, &store);
+  } catch (const CliError& error) {
+    throw CliError(error.code,
+                   fmt::format("{}; {} of {} finished and are kept in {}", error.what(),
+                               store.trials().size(), plan.Mine().size(), directory.string()),
+                   "the same command again goes on");
+  }
+  Print(context, WriteResults(plan, store.trials(), directory), directory);
+  return kOk;
+}
+
+ExitCode Merge(Context& context, const Invocation& invocation) {
+  std::vector<fs::path> parts;
+  std::istringstream words(invocation.Text("dir"));
+  for (std::string word; std::getline(words, word);) parts.emplace_back(word);
+  const fs::path directory = invocation.Text("output");
+  Plan whole = ReadPlan(parts.front());
+  Trials trials;
+  for (const auto& part : parts) {
+    const Plan plan = ReadPlan(part);
+    if (const auto difference = Difference(whole, plan); !difference.empty())
+      throw CliError(kRefused,
+                     fmt::format("{} holds another experiment than {}: {}", part.string(),
+                                 parts.front().string(), difference),
+                     "regrasp help experiment merge");
+    for (auto& [unit, rows] : ReadTrials(part)) {
+      const auto [place, fresh] = trials.emplace(unit, rows);
+      if (!fresh && place->second != rows)
+        throw CliError(
+            kRefused,
+            fmt::format("{} has another result for trial {} than the others", part.string(), unit),
+            "delete one of the two directories and run it again");
+    }
+  }
+  whole.shard = whole.shards = 1;
+  if (trials.size() < whole.num_units())
+    throw CliError(kRefused,
+                   fmt::format("{} of {} trials are missing", whole.num_units() - trials.size(),
+                               whole.num_units()),
+                   "give the directory of every shard, each run to its end");
+  Store store(directory, whole);
+  for (const auto& [unit, rows] : trials)
+    if (!store.trials().contains(unit)) store.Add(unit, rows);
+  Print(context, WriteResults(whole, store.trials(), directory), directory);
+  return kOk;
+}
+
+Arg Text(const char* key, const char* flags, const char* metavar, const char* help,
+         const char* default_text = "") {
+  return {
+      .key = key, .flags = flags, .metavar = metavar, .help = help, .default_text = default_text};
+}
+
+Arg Number(const char* key, const char* flags, ArgKind kind, const char* metavar, const char* help,
+           double min, double max, const char* default_text) {
+  return {.key = key,
+          .flags = flags,
+          .metavar = metavar,
+          .kind = kind,
+          .help = help,
+          .min = min,
+          .max = max,
+          .default_text = default_text};
+}
+
+Arg OutputDirectory() {
+  Arg arg =
+      Text("output", "-o,--output", "DIR", "where results go; unfinished ones go on from there");
+  arg.required = true;
+  return arg;
+}
+
+std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* noise) {
+  Arg set =
+      Text("set", "--set", "NAME=VALUE", "a parameter of the daemon, as in param set; repeatable");
+  set.repeated = true;
+  for (const Arg& arg :
+       {Text("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
+        Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,
+               kMaxSafeInteger - kMostSeeds, "1"),
+        Number("seeds", "-n,--seeds", ArgKind::kInteger, "N", "seeds, one after the other", 1,
+               kMostSeeds, seeds),
+        Text("object", "--object", "NAME|FILE", "the object", "the scenario's"),
+        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set,
+        Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        Number("workers", "--workers", ArgKind::kInteger, "N",
+               "daemons at work; the results do not depend on it", 1, 256, "one per core"),
+        Text("shard", "--shard", "i/N", "only every N-th trial, from the i-th; join with merge"),
+        OutputDirectory()})
+    args.push_back(arg);
+  return args;
+}
+
+std::vector<Arg> ExplorationArgs(const char* estimators) {
+  Arg criterion = Text("criterion", "--criterion", "NAME", "what is maximised", "manipulability");
+  const auto& values = FindParam(*FindMethod("explore"), "criterion")->values;
+  criterion.values.assign(values.begin(), values.end());
+  return {Text("finger", "--finger", "NAMES", "fingers, separated by commas, or all", "all"),
+          criterion,
+          Text("estimator", "--estimator", "NAMES", "least_squares, secant, or both with a comma",
+               estimators),
+          Number("rays", "--rays", ArgKind::kInteger, "N",
+                 "rays of the noise-free map that success is judged by; 0: none", 0, 360, "12")};
+}
+
+}  // namespace
+
+std::vector<CommandSpec> ExperimentCommands() {
+  Arg directories = Text("dir", "", "DIR...", "directories of the shards");
+  directories.required = directories.repeated = true;
+  return {
+      {"experiment exploration", kGroup,
+       "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
+       With(ExplorationArgs("least_squares"), "50", "paper"), Experiment},
+      {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
+       With({Text("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
+                  "0,0,-1"),
+             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
+             Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns", -360000,
+                    360000, "not used"),
+             Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
+                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s")},
+            "10", "paper"),
+       Experiment},
+      {"experiment noise-sweep", kGroup,
+       "explorations at every noise preset, the estimators side by side", nullptr,
+       With(ExplorationArgs("both"), "20", "off,fine,paper,coarse,taxel"), Experiment},
+      {"experiment merge",
+       kGroup,
+       "join the shards of an experiment",
+       nullptr,
+       {directories, OutputDirectory()},
+       Merge},
+  };
+}
+
+}  // namespace regrasp::cli

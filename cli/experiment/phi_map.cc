@@ -1,0 +1,109 @@
+#include "cli/experiment/phi_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "cli/errors.h"
+#include "cli/experiment/start_direction.h"
+#include "cli/print.h"
+
+namespace regrasp::cli {
+namespace {
+
+constexpr std::int64_t kSampleTicks = 20;  // 0.3 mm at 15 mm/s
+constexpr double kTimeShare = 1.8;         // of the time that the way to the excursion bound takes
+constexpr std::int64_t kTransferLimit = 5000;  // load transfer before and after [ticks]
+constexpr double kTick_s = 1e-3;
+
+/// Parameters that turn Algorithm 1 into a straight slide: no update, and as fast as is allowed.
+constexpr std::array<std::pair<const char*, double>, 2> kStraight = {
+    std::pair{"exploration.update_cycles", 10000.0}, std::pair{"exploration.eta", 0.01}};
+
+std::array<double, 3> Point(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
+
+double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+/// Mean of the finger's contact points with the object, weighted by force; null without contact.
+Json ContactPoint(const Json& truth, const std::string& finger) {
+  std::array<double, 3> sum = {0, 0, 0};
+  double weight = 0;
+  for (const auto& contact : truth.at("contacts")) {
+    if (At(contact, "finger") != finger) continue;
+    const auto f = Point(contact.at("force_W_n")), p = Point(contact.at("p_WC_m"));
+    const double w = std::hypot(f[0], f[1], f[2]) + 1e-9;
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += w * p[i];
+    weight += w;
+  }
+  if (weight == 0) return nullptr;
+  return {sum[0] / weight, sum[1] / weight, sum[2] / weight};
+}
+
+void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& criterion, int ray,
+         std::int64_t direction_seed, int cycles, PhiMap* map) {
+  const Json job = daemon->Call("explore", {{"finger", finger},
+                                            {"criterion", criterion},
+                                            {"estimator", "secant"},
+                                            {"seed", direction_seed},
+                                            {"max_cycles", cycles}});
+  Json begin;
+  bool slid = false;
+  for (std::int64_t tick = 0; tick < cycles + kTransferLimit; tick += kSampleTicks) {
+    daemon->Step(kSampleTicks);
+    const Json quality = daemon->Call("quality");
+    const Json& exploration = At(quality, "exploration");
+    const bool sliding = exploration.is_object() && exploration.at("cycle").get<int>() > 0;
+    if (!sliding && slid) return;
+    if (!sliding) continue;
+    if (exploration.at("cycle").get<int>() > cycles) return;
+    const Json truth = daemon->Call("truth");
+    const Json point = ContactPoint(truth, finger);
+    const Json& phi = criterion == "manipulability"
+                          ? truth.at("fingers").at(finger).at("manipulability")
+                          : exploration.at("phi");
+    if (point.is_null() || !phi.is_number()) continue;
+    if (!slid) {
+      slid = true;
+      begin = point;
+      ++map->rays;
+    }
+    map->samples.push_back({{"ray", ray}, {"p_WC_m", point}, {"phi", phi}});
+    if (phi.get<double>() <= map->best) continue;
+    map->best = phi;
+    map->distance_m = Distance(Point(point), Point(begin));
+  }
+}
+
+}  // namespace
+
+PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed,
+              const std::string& finger, const std::string& criterion, int rays) {
+  PhiMap map;
+  map.samples = Json::array();
+  const auto parameter = [&](const char* name) {
+    return daemon->Call("param.get", {{"name", name}}).at("value");
+  };
+  std::array<Json, kStraight.size()> before;
+  for (std::size_t i = 0; i < kStraight.size(); ++i) before[i] = parameter(kStraight[i].first);
+  const double way_s = parameter("exploration.max_excursion").get<double>() /
+                       parameter("exploration.speed_max").get<double>();
+  const int cycles = static_cast<int>(std::ceil(kTimeShare * way_s / kTick_s));
+  for (int ray = 0; ray < rays; ++ray) {
+    daemon->Call("noise.set", {{"preset", noise}});
+    if (!Done(daemon->Grasp(seed))) break;
+    daemon->Call("noise.set", {{"preset", "off"}});
+    for (const auto& [name, value] : kStraight)
+      daemon->Call("param.set", {{"name", name}, {"value", value}});
+    Ray(daemon, finger, criterion, ray, SeedOfDirection(2 * std::numbers::pi * ray / rays), cycles,
+        &map);
+    for (std::size_t i = 0; i < kStraight.size(); ++i)
+      daemon->Call("param.set", {{"name", kStraight[i].first}, {"value", before[i]}});
+  }
+  daemon->Call("noise.set", {{"preset", noise}});
+  return map;
+}
+
+}  // namespace regrasp::cli

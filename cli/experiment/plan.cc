@@ -1,0 +1,231 @@
+#include "cli/experiment/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <tuple>
+
+#include "cli/errors.h"
+#include "cli/print.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+/// Names separated by commas, each one of `allowed`, in the order of `allowed`.
+std::vector<std::string> Names(const std::string& text, const std::vector<std::string>& allowed,
+                               const std::string& flag) {
+  const auto given = Split(text, ',');
+  for (const auto& name : given)
+    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
+      throw CliError(kUsage,
+                     fmt::format("{} '{}' is none of {}", flag, name, fmt::join(allowed, ", ")));
+  std::vector<std::string> names;
+  for (const auto& name : allowed)
+    if (std::find(given.begin(), given.end(), name) != given.end()) names.push_back(name);
+  if (names.empty()) throw CliError(kUsage, fmt::format("{} is empty", flag));
+  return names;
+}
+
+std::vector<std::string> ValuesOf(const char* method, const char* parameter) {
+  const ParamSpec* spec = FindParam(*FindMethod(method), parameter);
+  return {spec->values.begin(), spec->values.end()};
+}
+
+std::vector<std::string> Axes(const std::string& text) {
+  if (text == "all") return {"1,0,0", "-1,0,0", "0,1,0", "0,-1,0", "0,0,1", "0,0,-1"};
+  const auto v = ParseNumbers(text, 3, "--axis");
+  if (v[0] == 0 && v[1] == 0 && v[2] == 0)
+    throw CliError(kUsage, "--axis 0,0,0 has no direction",
+                   "regrasp experiment rotation --axis 0,0,-1 -o DIR");
+  return {fmt::format("{},{},{}", v[0], v[1], v[2])};
+}
+
+std::pair<int, int> Shard(const std::string& text) {
+  const auto parts = Split(text, '/');
+  const CliError bad(kUsage, fmt::format("--shard '{}' is not i/N with 1 <= i <= N", text),
+                     "regrasp help experiment exploration");
+  if (parts.size() != 2) throw bad;
+  const double i = ParseNumber(parts[0], "--shard"), n = ParseNumber(parts[1], "--shard");
+  if (i != static_cast<int>(i) || n != static_cast<int>(n) || i < 1 || i > n || n > 1e6) throw bad;
+  return {static_cast<int>(i), static_cast<int>(n)};
+}
+
+/// A name stays a name, a file becomes an absolute path.
+std::string ModelName(const std::string& text) {
+  return text.find('/') == std::string::npos ? text : fs::absolute(text).string();
+}
+
+std::int64_t Integer(const Invocation& invocation, const char* key, const char* otherwise) {
+  return static_cast<std::int64_t>(
+      ParseNumber(invocation.Text(key, otherwise), std::string("--") + key));
+}
+
+}  // namespace
+
+std::size_t Plan::num_units() const {
+  return noise.size() * subjects.size() * static_cast<std::size_t>(seeds);
+}
+
+Unit Plan::unit(std::size_t index) const {
+  const auto n = static_cast<std::size_t>(seeds);
+  return {noise[index / n / subjects.size()], subjects[index / n % subjects.size()],
+          first_seed + static_cast<std::int64_t>(index % n)};
+}
+
+std::vector<std::size_t> Plan::Mine() const {
+  std::vector<std::size_t> mine;
+  for (std::size_t i = static_cast<std::size_t>(shard) - 1; i < num_units();
+       i += static_cast<std::size_t>(shards))
+    mine.push_back(i);
+  return mine;
+}
+
+std::string Plan::Command(const Unit& unit, const std::string& estimator) const {
+  std::string text = fmt::format("regrasp experiment {}", rotation() ? "rotation" : "exploration");
+  if (rotation()) {
+    text += fmt::format(" --axis={} --turns {}", unit.subject, turns);
+    if (speed_deg_s > 0) text += fmt::format(" --speed {}", speed_deg_s);
+  } else {
+    text += fmt::format(" --finger {} --criterion {} --estimator {} --rays {}", unit.subject,
+                        criterion, estimator, rays);
+  }
+  text += fmt::format(" --noise {} --seed {} -n 1", unit.noise, unit.seed);
+  for (const auto& [flag, value] : {std::pair{"hand", hand}, std::pair{"object", object}})
+    if (!value.empty()) text += fmt::format(" --{} {}", flag, value);
+  for (const auto& [name, value] : set) text += fmt::format(" --set {}={}", name, value);
+  return text + " -o trial";
+}
+
+std::vector<std::string> Plan::DaemonArguments() const {
+  std::vector<std::string> words;
+  for (const auto& [flag, value] : {std::pair{"--hand", hand}, std::pair{"--object", object},
+                                    std::pair{"--models-dir", models_dir}})
+    if (!value.empty()) words.insert(words.end(), {flag, value});
+  return words;
+}
+
+Json ToJson(const Plan& p) {
+  Json set = Json::object();
+  for (const auto& [name, value] : p.set) set[name] = value;
+  Json json = {{"experiment", p.experiment}, {"noise", p.noise}};
+  json[p.rotation() ? "axes" : "fingers"] = p.subjects;
+  if (p.rotation()) {
+    json["turns"] = p.turns;
+    json["speed_deg_s"] = p.speed_deg_s;
+  } else {
+    json["estimators"] = p.estimators;
+    json["criterion"] = p.criterion;
+    json["rays"] = p.rays;
+  }
+  json["first_seed"] = p.first_seed;
+  json["seeds"] = p.seeds;
+  json["hand"] = p.hand;
+  json["object"] = p.object;
+  json["set"] = set;
+  json["version"] = p.version;
+  json["build"] = p.build;
+  if (p.shards > 1) json["shard"] = fmt::format("{}/{}", p.shard, p.shards);
+  return json;
+}
+
+Plan PlanFromJson(const Json& json, const std::string& path) {
+  try {
+    Plan p;
+    p.experiment = json.at("experiment");
+    p.noise = json.at("noise");
+    p.subjects = json.at(p.rotation() ? "axes" : "fingers").get<std::vector<std::string>>();
+    if (p.rotation()) {
+      p.turns = json.at("turns");
+      p.speed_deg_s = json.at("speed_deg_s");
+    } else {
+      p.estimators = json.at("estimators").get<std::vector<std::string>>();
+      p.criterion = json.at("criterion");
+      p.rays = json.at("rays");
+    }
+    p.first_seed = json.at("first_seed");
+    p.seeds = json.at("seeds");
+    p.hand = json.at("hand");
+    p.object = json.at("object");
+    for (const auto& [name, value] : json.at("set").items()) p.set.emplace_back(name, value);
+    p.version = json.at("version");
+    p.build = json.at("build");
+    if (json.contains("shard")) std::tie(p.shard, p.shards) = Shard(json.at("shard"));
+    return p;
+  } catch (const std::exception& error) {
+    throw CliError(kIo, fmt::format("{} does not describe an experiment: {}", path, error.what()),
+                   "ls " + path);
+  }
+}
+
+std::string Difference(const Plan& before, const Plan& now) {
+  const Json a = ToJson(before), b = ToJson(now);
+  std::string text;
+  const auto add = [&](const std::string& key) {
+    const Json &was = At(a, key.c_str()), &is = At(b, key.c_str());
+    if (was != is && key != "shard")
+      text +=
+          fmt::format("{}{} was {}, is {}", text.empty() ? "" : "; ", key, was.dump(), is.dump());
+  };
+  for (const auto& [key, value] : a.items()) add(key);
+  for (const auto& [key, value] : b.items())
+    if (!a.contains(key)) add(key);
+  return text;
+}
+
+Plan PlanFromArguments(const std::string& experiment, const Invocation& invocation) {
+  Plan p;
+  p.experiment = experiment;
+  const bool sweep = experiment == "noise-sweep";
+  const auto presets = ValuesOf("noise.set", "preset");
+  p.noise =
+      Names(invocation.Text("noise", sweep ? fmt::format("{}", fmt::join(presets, ",")) : "paper"),
+            presets, "--noise");
+  p.first_seed = Integer(invocation, "seed", "1");
+  p.seeds = Integer(invocation, "seeds", p.rotation() ? "10" : sweep ? "20" : "50");
+  if (p.rotation()) {
+    p.subjects = Axes(invocation.Text("axis", "0,0,-1"));
+    if (invocation.Has("turns") && invocation.Has("angle"))
+      throw CliError(kUsage, "--turns and --angle exclude each other");
+    p.turns = invocation.Has("angle") ? ParseNumber(invocation.Text("angle"), "--angle") / 360
+                                      : ParseNumber(invocation.Text("turns", "1"), "--turns");
+    if (p.turns == 0)
+      throw CliError(kUsage, "an angle of 0 leaves nothing to turn",
+                     "regrasp experiment rotation --turns 1 -o DIR");
+    p.speed_deg_s = ParseNumber(invocation.Text("speed", "0"), "--speed");
+  } else {
+    p.subjects = Split(invocation.Text("finger", "all"), ',');
+    const auto estimators = ValuesOf("explore", "estimator");
+    p.estimators =
+        Names(invocation.Text("estimator", sweep ? fmt::format("{}", fmt::join(estimators, ","))
+                                                 : "least_squares"),
+              estimators, "--estimator");
+    p.criterion = invocation.Text("criterion", "manipulability");
+    p.rays = static_cast<int>(Integer(invocation, "rays", "12"));
+  }
+  p.hand = ModelName(invocation.Text("hand"));
+  p.object = ModelName(invocation.Text("object"));
+  if (invocation.Has("models-dir"))
+    p.models_dir = fs::absolute(invocation.Text("models-dir")).string();
+  for (const auto& word : Split(invocation.Text("set"), '\n')) {
+    const auto equals = word.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw CliError(kUsage, fmt::format("--set '{}' is not NAME=VALUE", word),
+                     "regrasp param list");
+    p.set.emplace_back(word.substr(0, equals), word.substr(equals + 1));
+  }
+  if (invocation.Has("shard")) std::tie(p.shard, p.shards) = Shard(invocation.Text("shard"));
+  return p;
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,58 @@
+#pragma once
+
+/// What an experiment does, and nothing of how: no worker, no clock, no path but those of models.
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/grammar.h"
+
+namespace regrasp::cli {
+
+/// One part of an experiment that is run and kept as a whole: what starts from the same state. An
+/// exploration gives a row for each estimator, a rotation one row.
+struct Unit {
+  std::string noise;
+  std::string subject;  ///< the finger, or the axis as "X,Y,Z"
+  std::int64_t seed = 0;
+};
+
+struct Plan {
+  std::string experiment;                ///< "exploration", "noise-sweep", "rotation"
+  std::string hand, object, models_dir;  ///< empty: the daemon's own
+  std::vector<std::pair<std::string, std::string>> set;  ///< parameters, values as typed
+  std::vector<std::string> noise, subjects;
+  std::int64_t first_seed = 1, seeds = 0;
+  std::vector<std::string> estimators;  ///< explorations
+  std::string criterion;                ///< explorations
+  int rays = 0;                         ///< explorations: of the map of phi; 0: no map
+  double turns = 0, speed_deg_s = 0;    ///< rotations; speed 0: the parameter's
+  std::string version, build;           ///< of the daemon
+  int shard = 1, shards = 1;            ///< this part, 1 ... shards, takes every shards-th unit
+
+  bool rotation() const { return experiment == "rotation"; }
+  std::size_t num_units() const;
+  Unit unit(std::size_t index) const;
+  /// Indices of the units of this shard, ascending.
+  std::vector<std::size_t> Mine() const;
+  /// The command that makes the one row of this unit (and estimator) again.
+  std::string Command(const Unit& unit, const std::string& estimator) const;
+  /// Arguments for the daemon.
+  std::vector<std::string> DaemonArguments() const;
+};
+
+/// What decides the results, as it is written in experiment.json; the inverse of PlanFromJson().
+Json ToJson(const Plan& plan);
+/// Throws CliError(kIo) naming `path` when `json` is no plan.
+Plan PlanFromJson(const Json& json, const std::string& path);
+/// "noise was [\"paper\"], is [\"off\"]" for every difference but the shard; empty when there is
+/// none.
+std::string Difference(const Plan& before, const Plan& now);
+
+/// The plan that the arguments of `experiment exploration|noise-sweep|rotation` ask for; fingers
+/// ("all") are still to be named, version and build to be filled in. Throws CliError(kUsage).
+Plan PlanFromArguments(const std::string& experiment, const Invocation& invocation);
+
+}  // namespace regrasp::cli

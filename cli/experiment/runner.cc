@@ -1,0 +1,129 @@
+#include "cli/experiment/runner.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "cli/experiment/trial.h"
+
+namespace regrasp::cli {
+namespace {
+
+std::string Describe(const Output& out, const Json& row) {
+  std::string text;
+  if (row.contains("finger")) {
+    text =
+        fmt::format("{} seed {} {} {}: {}", Plain(row.at("finger")), Plain(row.at("seed")),
+                    Plain(row.at("noise")), Plain(row.at("estimator")), Plain(row.at("outcome")));
+    if (row.at("phi_true_gain").is_number())
+      text += fmt::format(", {} {} to {}", out.Phi(), Fixed(row.at("phi_true_initial"), 3),
+                          Fixed(row.at("phi_true_final"), 3));
+    if (At(row, "share_of_best").is_number())
+      text += fmt::format(", {} % of the best", Fixed(row.at("share_of_best"), 1, 100));
+  } else {
+    text = fmt::format("axis {} seed {} {}: {}", Plain(row.at("axis_W")), Plain(row.at("seed")),
+                       Plain(row.at("noise")), Plain(row.at("outcome")));
+    if (row.at("rate_deg_min").is_number())
+      text += fmt::format(", {} deg/min", Fixed(row.at("rate_deg_min"), 0));
+  }
+  if (row.at("error").is_string()) text += " (" + Plain(row.at("error")) + ")";
+  return text;
+}
+
+/// On stderr: one line that is rewritten on a terminal, else a line for each unit.
+class Progress {
+ public:
+  Progress(Context& context, std::size_t done, std::size_t total)
+      : out_(context.out()),
+        quiet_(context.options().quiet),
+        terminal_(::isatty(STDERR_FILENO) == 1),
+        kept_(done),
+        done_(done),
+        total_(total) {
+    if (quiet_) return;
+    if (terminal_)
+      Bar("");
+    else if (kept_ > 0)
+      fmt::print(stderr, "{} of {} are there already\n", kept_, total_);
+  }
+  ~Progress() {
+    if (!quiet_ && terminal_) std::fputs("\r\x1b[K", stderr);
+  }
+  void Finished(const std::vector<Json>& rows) {
+    ++done_;
+    if (quiet_) return;
+    if (terminal_) return Bar(Describe(out_, rows.back()));
+    for (const Json& row : rows)
+      fmt::print(stderr, "{:>{}}/{} {}\n", done_, std::to_string(total_).size(), total_,
+                 Describe(out_, row));
+  }
+
+ private:
+  void Bar(const std::string& what) {
+    if (quiet_) return;
+    const double share = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1;
+    std::string text = fmt::format("\r\x1b[K{} {}/{}", out_.Bar(share, 24), done_, total_);
+    if (done_ > kept_ && done_ < total_) {
+      const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
+      const auto left = static_cast<long>(std::lround(elapsed / static_cast<double>(done_ - kept_) *
+                                                      static_cast<double>(total_ - done_)));
+      text += fmt::format("  {}:{:02} left", left / 60, left % 60);
+    }
+    std::fputs((text + "  " + what.substr(0, 40)).c_str(), stderr);
+  }
+
+  Output& out_;
+  bool quiet_, terminal_;
+  std::size_t kept_, done_, total_;
+  Clock::time_point begin_ = Clock::now();
+};
+
+}  // namespace
+
+void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
+  std::vector<std::size_t> left;
+  const auto mine = plan.Mine();
+  std::copy_if(mine.begin(), mine.end(), std::back_inserter(left),
+               [&](std::size_t unit) { return !store->trials().contains(unit); });
+  if (left.empty()) return;
+
+  std::mutex mutex;  // of all below
+  Progress progress(context, mine.size() - left.size(), mine.size());
+  std::size_t next = 0;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      SteppedDaemon daemon(plan.DaemonArguments());
+      Prepare(&daemon, plan);
+      while (true) {
+        std::size_t unit = 0;
+        {
+          const std::lock_guard lock(mutex);
+          if (next == left.size() || failure) return;
+          unit = left[next++];
+        }
+        const auto rows = RunUnit(&daemon, plan, plan.unit(unit));
+        const std::lock_guard lock(mutex);
+        store->Add(unit, rows);
+        progress.Finished(rows);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < std::min<int>(workers, static_cast<int>(left.size())); ++i)
+      threads.emplace_back(work);
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,27 @@
+#include "cli/experiment/statistics.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace regrasp::cli {
+
+Interval WilsonInterval(int successes, int trials) {
+  if (trials == 0) return {};
+  constexpr double z = 1.959963984540054;  // standard normal, 97.5 %
+  const double n = trials, p = successes / n;
+  const double middle = (p + z * z / (2 * n)) / (1 + z * z / n);
+  const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+  return {successes == 0 ? 0.0 : std::max(0.0, middle - half),
+          successes == trials ? 1.0 : std::min(1.0, middle + half)};
+}
+
+double Quantile(const std::vector<double>& values, double share) {
+  assert(!values.empty());
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+}  // namespace regrasp::cli

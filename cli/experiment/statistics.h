@@ -1,0 +1,22 @@
+#pragma once
+
+/// Statistics of an experiment's summary.
+
+#include <vector>
+
+namespace regrasp::cli {
+
+struct Interval {
+  double low = 0, high = 1;
+};
+
+/// Wilson's score interval for a probability, 95 % [Wilson 1927]: `successes` of `trials`, 0 <=
+/// successes <= trials. It stays inside [0, 1] and is of use at 0 and at all successes, where the
+/// normal approximation has width 0. No trials: [0, 1].
+Interval WilsonInterval(int successes, int trials);
+
+/// The `share` quantile of `values`, 0 <= share <= 1, linear between the order statistics (R's type
+/// 7). `values`: at least one, ascending.
+double Quantile(const std::vector<double>& values, double share);
+
+}  // namespace regrasp::cli

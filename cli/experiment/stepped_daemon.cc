@@ -1,0 +1,74 @@
+#include "cli/experiment/stepped_daemon.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "cli/errors.h"
+#include "cli/print.h"
+
+namespace regrasp::cli {
+namespace {
+
+constexpr double kNoLimit = 0;
+constexpr std::int64_t kGraspChunk = 100, kGraspLimit = 30000;  // [ticks]
+
+std::vector<std::string> WithSpeed(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"--paused", "--speed", "max"});
+  return arguments;
+}
+
+bool Running(const Json& record) {
+  const std::string state = Plain(At(record, "state"));
+  return state == "queued" || state == "running";
+}
+
+}  // namespace
+
+SteppedDaemon::SteppedDaemon(std::vector<std::string> arguments)
+    : daemon_(WithSpeed(std::move(arguments))), client_(daemon_.socket(), kNoLimit) {}
+
+void SteppedDaemon::Step(std::int64_t ticks) {
+  const Json step = Call("step", {{"ticks", ticks}});
+  Call("job.wait", {{"id", step.at("job")}});
+  // Paused it is already: the answer comes when all that the last tick did has been told.
+  Call("pause");
+}
+
+Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
+                        std::int64_t max_ticks) {
+  Json job;
+  try {
+    job = Call(method, params);
+  } catch (const CliError& error) {
+    if (error.rpc_code == 0 || error.code != kRefused) throw;
+    return {{"method", method}, {"state", "failed"}, {"error", error.what()}};
+  }
+  Json record;
+  for (std::int64_t ticks = 0; ticks < max_ticks; ticks += chunk_ticks) {
+    Step(chunk_ticks);
+    record = Call("job.get", {{"id", job.at("job")}});
+    if (!Running(record)) break;
+  }
+  return record;
+}
+
+Json SteppedDaemon::Grasp(std::int64_t seed) {
+  Call("reset", {{"seed", seed}});
+  return Run("grasp", Json::object(), kGraspChunk, kGraspLimit);
+}
+
+bool Done(const Json& record) { return Plain(At(record, "state")) == "done"; }
+
+std::string DaemonBuild() {
+  const std::string path = FindDaemon();
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (bytes.empty()) throw CliError(kIo, "cannot read " + path, "ls -l " + path);
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,45 @@
+#pragma once
+
+/// A private daemon that advances only when told, in whole chunks of ticks: what happens in a run
+/// then depends on its seed and commands alone, never on how fast anything is.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/client.h"
+#include "cli/private_daemon.h"
+
+namespace regrasp::cli {
+
+class SteppedDaemon {
+ public:
+  /// Starts a paused daemon at full speed. `arguments` go to it as they are. Throws CliError.
+  explicit SteppedDaemon(std::vector<std::string> arguments);
+
+  Json Call(const std::string& method, const Json& params = Json::object()) {
+    return client_.Call(method, params);
+  }
+  /// Advances by `ticks`; what Call() then tells is about the last of them.
+  void Step(std::int64_t ticks);
+  /// Sends a command that starts a job and steps in chunks until the job has ended, or has not
+  /// after `max_ticks`. Returns its record. A command that is refused at once gives a record whose
+  /// state is "failed" and whose error says why.
+  Json Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
+           std::int64_t max_ticks);
+  /// A new run in which the object is in the hand. Returns the record of the grasp.
+  Json Grasp(std::int64_t seed);
+
+ private:
+  PrivateDaemon daemon_;
+  Client client_;
+};
+
+/// True for the record of a job that did what was asked.
+bool Done(const Json& record);
+
+/// An identity of the daemon's program: 64 bits over the bytes of `regraspd`, in hex. Throws
+/// CliError.
+std::string DaemonBuild();
+
+}  // namespace regrasp::cli

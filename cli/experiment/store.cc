@@ -1,0 +1,139 @@
+#include "cli/experiment/store.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "cli/errors.h"
+#include "cli/print.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlanFile = "experiment.json";
+constexpr const char* kOther = "the same command with -o OTHER_DIR";
+constexpr const char* kTrialsFile = "trials.jsonl";
+
+CliError IoError(const std::string& what, const fs::path& path) {
+  return {errno == EACCES ? kPermission : kIo,
+          fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)),
+          "ls -ld " + path.parent_path().string()};
+}
+
+void WriteAll(int fd, const std::string& text, const fs::path& path) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t n = ::write(fd, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw IoError("write", path);
+    done += static_cast<std::size_t>(n);
+  }
+}
+
+std::string ReadFile(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError("read", path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Ends a line that a crash cut off, so that the next one begins on its own.
+void EndLastLine(int fd, const fs::path& path) {
+  const off_t size = ::lseek(fd, 0, SEEK_END);
+  char last = '\n';
+  if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') WriteAll(fd, "\n", path);
+}
+
+}  // namespace
+
+Plan ReadPlan(const fs::path& directory) {
+  const fs::path path = directory / kPlanFile;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored))
+    throw CliError(kNotFound, fmt::format("{} holds no experiment", directory.string()),
+                   "regrasp help experiment");
+  return PlanFromJson(Json::parse(ReadFile(path), nullptr, false), path.string());
+}
+
+Trials ReadTrials(const fs::path& directory) {
+  Trials trials;
+  std::ifstream file(directory / kTrialsFile);
+  for (std::string line; std::getline(file, line);) {
+    const Json json = Json::parse(line, nullptr, false);
+    if (!At(json, "unit").is_number_unsigned() || !At(json, "rows").is_array()) continue;
+    trials[json["unit"].get<std::size_t>()] = json["rows"].get<std::vector<Json>>();
+  }
+  return trials;
+}
+
+void WriteFile(const fs::path& path, const std::string& text) {
+  const fs::path next = path.string() + ".new";
+  const int fd = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd < 0) throw IoError("write", next);
+  try {
+    WriteAll(fd, text, next);
+  } catch (...) {
+    ::close(fd);
+    throw;
+  }
+  if (::close(fd) != 0 || ::rename(next.c_str(), path.c_str()) != 0) throw IoError("write", path);
+}
+
+Store::Store(fs::path directory, const Plan& plan) : directory_(std::move(directory)) {
+  std::error_code error;
+  fs::create_directories(directory_, error);
+  if (error)
+    throw CliError(kIo, fmt::format("cannot make {}: {}", directory_.string(), error.message()),
+                   kOther);
+  lock_ = ::open(directory_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) throw IoError("open", directory_);
+  try {
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
+      throw CliError(kRefused,
+                     fmt::format("another experiment is running in {}", directory_.string()),
+                     kOther);
+    if (!fs::exists(directory_ / kPlanFile)) {
+      WriteFile(directory_ / kPlanFile, ToJson(plan).dump(1) + "\n");
+    } else {
+      const Plan before = ReadPlan(directory_);
+      std::string difference = Difference(before, plan);
+      if (difference.empty() && (before.shard != plan.shard || before.shards != plan.shards))
+        difference = fmt::format("shard was {}/{}, is {}/{}", before.shard, before.shards,
+                                 plan.shard, plan.shards);
+      if (!difference.empty())
+        throw CliError(
+            kRefused,
+            fmt::format("{} holds another experiment: {}", directory_.string(), difference),
+            kOther);
+    }
+    trials_ = ReadTrials(directory_);
+    const fs::path path = directory_ / kTrialsFile;
+    file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    if (file_ < 0) throw IoError("write", path);
+    EndLastLine(file_, path);
+  } catch (...) {
+    if (file_ >= 0) ::close(file_);
+    ::close(lock_);
+    throw;
+  }
+}
+
+Store::~Store() {
+  ::close(file_);
+  ::close(lock_);
+}
+
+void Store::Add(std::size_t unit, const std::vector<Json>& rows) {
+  const Json line = {{"unit", unit}, {"rows", rows}};
+  WriteAll(file_, line.dump() + "\n", directory_ / kTrialsFile);
+  // As it will be read again, so that a run in one go and one in two give the same bytes.
+  trials_[unit] = Json::parse(line.dump()).at("rows").get<std::vector<Json>>();
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,46 @@
+#pragma once
+
+/// An experiment's directory:
+///   experiment.json  the plan
+///   trials.jsonl     a line for each finished unit, in the order in which they finished
+///   trials.csv, summary.json, summary.png    made from these when all have finished
+/// A line is written at once when its unit has finished; a line cut off by a crash is ignored.
+
+#include <filesystem>
+#include <map>
+
+#include "cli/experiment/plan.h"
+
+namespace regrasp::cli {
+
+using Trials = std::map<std::size_t, std::vector<Json>>;  ///< rows by index of their unit
+
+class Store {
+ public:
+  /// Makes the directory and writes the plan, or goes on with the one that is there. Throws
+  /// CliError: kRefused when it holds another experiment (the difference is named) or another
+  /// program works in it, kIo.
+  Store(std::filesystem::path directory, const Plan& plan);
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
+
+  const std::filesystem::path& directory() const { return directory_; }
+  const Trials& trials() const { return trials_; }
+  /// Keeps a finished unit. Throws CliError(kIo).
+  void Add(std::size_t unit, const std::vector<Json>& rows);
+
+ private:
+  std::filesystem::path directory_;
+  int lock_ = -1, file_ = -1;
+  Trials trials_;
+};
+
+/// The plan of a directory. Throws CliError(kNotFound, kIo).
+Plan ReadPlan(const std::filesystem::path& directory);
+/// Its finished units; none when it has no trials. Throws CliError(kIo).
+Trials ReadTrials(const std::filesystem::path& directory);
+/// Replaces a file as a whole. Throws CliError(kIo).
+void WriteFile(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace regrasp::cli

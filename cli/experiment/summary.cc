@@ -1,0 +1,212 @@
+#include "cli/experiment/summary.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "cli/errors.h"
+#include "cli/experiment/statistics.h"
+
+extern char** environ;
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Columns {
+  std::vector<const char*> counts, quantiles;
+};
+
+Columns ColumnsOf(const Plan& plan) {
+  if (plan.rotation())
+    return {{"completed"},
+            {"rate_deg_min", "max_position_error_m", "max_tilt_rad", "angle_error_rad", "regrasps",
+             "sim_time_s"}};
+  Columns columns = {{"rose"}, {"phi_true_gain", "cycles", "path_length_m", "object_moved_m"}};
+  if (plan.rays > 0) {
+    columns.counts.push_back("near_best");
+    columns.quantiles.push_back("share_of_best");
+  }
+  columns.counts.push_back("converged");
+  return columns;
+}
+
+Json Count(int k, int n) {
+  const Interval interval = WilsonInterval(k, n);
+  return {{"k", k},
+          {"share", n > 0 ? static_cast<double>(k) / n : 0.0},
+          {"low", interval.low},
+          {"high", interval.high}};
+}
+
+Json Quantiles(std::vector<double> values) {
+  Json json = {{"n", values.size()}};
+  if (values.empty()) return json;
+  std::sort(values.begin(), values.end());
+  double sum = 0;
+  for (const double value : values) sum += value;
+  for (const auto& [name, share] :
+       {std::pair{"min", 0.0}, std::pair{"q05", 0.05}, std::pair{"q25", 0.25},
+        std::pair{"median", 0.5}, std::pair{"q75", 0.75}, std::pair{"q95", 0.95},
+        std::pair{"max", 1.0}})
+    json[name] = Quantile(values, share);
+  json["mean"] = sum / static_cast<double>(values.size());
+  return json;
+}
+
+Json Group(const Columns& columns, const std::vector<const Json*>& rows) {
+  const int n = static_cast<int>(rows.size());
+  Json counts = Json::object(), quantiles = Json::object();
+  for (const char* column : columns.counts) {
+    const auto k = std::count_if(rows.begin(), rows.end(),
+                                 [&](const Json* row) { return At(*row, column) == true; });
+    counts[column] = Count(static_cast<int>(k), n);
+  }
+  for (const char* outcome :
+       {"dropped", "refused", "not_grasped", "contact_lost", "failed", "unfinished", "fault"}) {
+    const auto k = std::count_if(rows.begin(), rows.end(),
+                                 [&](const Json* row) { return At(*row, "outcome") == outcome; });
+    if (k > 0 || outcome == std::string("dropped")) counts[outcome] = Count(static_cast<int>(k), n);
+  }
+  for (const char* column : columns.quantiles) {
+    std::vector<double> values;
+    for (const Json* row : rows)
+      if (At(*row, column).is_number()) values.push_back(At(*row, column).get<double>());
+    quantiles[column] = Quantiles(values);
+  }
+  return {{"n", n}, {"counts", counts}, {"quantiles", quantiles}};
+}
+
+std::vector<const Json*> RowsWhere(const Trials& trials, const Json& wanted) {
+  std::vector<const Json*> rows;
+  for (const auto& [unit, unit_rows] : trials)
+    for (const Json& row : unit_rows)
+      if (std::all_of(wanted.items().begin(), wanted.items().end(), [&](const auto& item) {
+            return At(row, item.key().c_str()) == item.value();
+          }))
+        rows.push_back(&row);
+  return rows;
+}
+
+/// The program that draws: it links OpenCV, this one does not. Beside this program, or installed in
+/// libexec.
+std::string FindPlotter() {
+  std::error_code ignored;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const fs::path& path :
+       {bin / "regrasp-plot-experiment", bin / REGRASP_LIBEXEC_FROM_BIN "/regrasp-plot-experiment"})
+    if (::access(path.c_str(), X_OK) == 0) return path;
+  throw CliError(kNotFound,
+                 fmt::format("no regrasp-plot-experiment beside {}: results without picture",
+                             (bin / "regrasp").string()),
+                 "regrasp doctor");
+}
+
+void Draw(const fs::path& summary, const fs::path& picture) {
+  const std::string program = FindPlotter();
+  std::string name = program, in = summary, out = picture;
+  char* argv[] = {name.data(), in.data(), out.data(), nullptr};
+  pid_t pid = 0;
+  int status = 0;
+  if (::posix_spawn(&pid, program.c_str(), nullptr, nullptr, argv, environ) != 0 ||
+      ::waitpid(pid, &status, 0) != pid || status != 0)
+    throw CliError(kIo, fmt::format("{} could not draw {}", program, picture.string()),
+                   fmt::format("{} {} {}", program, in, out));
+}
+
+std::string Share(const Json& count, int n) {
+  return fmt::format("{}/{} ({:.0f}-{:.0f} %)", count.at("k").get<int>(), n,
+                     100 * count.at("low").get<double>(), 100 * count.at("high").get<double>());
+}
+
+}  // namespace
+
+std::string TrialsCsv(const Trials& trials) {
+  CsvTable table;
+  std::string text;
+  for (const auto& [unit, rows] : trials)
+    for (const Json& row : rows) text += table.Row(row);
+  return text;
+}
+
+Json Summary(const Plan& plan, const Trials& trials) {
+  const Columns columns = ColumnsOf(plan);
+  Json groups = Json::array();
+  int n = 0;
+  for (const auto& [unit, rows] : trials) n += static_cast<int>(rows.size());
+  const auto add = [&](const Json& name, const Json& wanted) {
+    Json group = name;
+    group.update(Group(columns, RowsWhere(trials, wanted)));
+    groups.push_back(group);
+  };
+  for (const auto& noise : plan.noise) {
+    if (plan.rotation()) {
+      for (const auto& axis : plan.subjects)
+        add({{"noise", noise}, {"axis_W", axis}}, {{"noise", noise}, {"axis_W", axis}});
+      continue;
+    }
+    for (const auto& estimator : plan.estimators) {
+      const Json cell = {{"noise", noise}, {"estimator", estimator}};
+      const auto with = [&cell](const std::string& finger) {
+        Json json = cell;
+        json["finger"] = finger;
+        return json;
+      };
+      for (const auto& finger : plan.subjects) add(with(finger), with(finger));
+      if (plan.subjects.size() > 1) add(with("all"), cell);
+    }
+  }
+  return {{"experiment", ToJson(plan)}, {"trials", n}, {"groups", groups}};
+}
+
+std::string SummaryTable(const Output& out, const Json& summary) {
+  const Json& plan = summary.at("experiment");
+  const bool rotation = plan.at("experiment") == "rotation";
+  const bool map = At(plan, "rays").is_number() && plan.at("rays").get<int>() > 0;
+  std::vector<std::string> titles = {"noise"};
+  if (rotation)
+    titles.insert(titles.end(), {"axis", "completed (95 %)", ">deg/min", ">offset mm", ">dropped"});
+  else
+    titles.insert(titles.end(), {"estimator", "finger", std::string(out.Phi()) + " rose (95 %)"});
+  if (map) titles.insert(titles.end(), {"within 5 % of best (95 %)", ">share of best"});
+  if (!rotation) titles.insert(titles.end(), {">gain", ">dropped", ">refused"});
+  Table table(titles);
+  for (const auto& group : summary.at("groups")) {
+    const int n = group.at("n");
+    const Json &counts = group.at("counts"), &quantiles = group.at("quantiles");
+    const auto number = [&counts](const char* name) {
+      return counts.contains(name) ? Plain(counts[name].at("k")) : "0";
+    };
+    std::vector<std::string> cells = {group.at("noise")};
+    if (rotation) {
+      cells.insert(cells.end(), {group.at("axis_W"), Share(counts.at("completed"), n),
+                                 Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
+                                 Fixed(At(quantiles.at("max_position_error_m"), "max"), 2, 1e3),
+                                 number("dropped")});
+    } else {
+      cells.insert(cells.end(),
+                   {group.at("estimator"), group.at("finger"), Share(counts.at("rose"), n)});
+      if (map)
+        cells.insert(cells.end(), {Share(counts.at("near_best"), n),
+                                   Fixed(At(quantiles.at("share_of_best"), "median"), 3)});
+      cells.insert(cells.end(), {Fixed(At(quantiles.at("phi_true_gain"), "median"), 1, 100) + " %",
+                                 number("dropped"), number("refused")});
+    }
+    table.Row(cells);
+  }
+  return table.Text(out);
+}
+
+Json WriteResults(const Plan& plan, const Trials& trials, const fs::path& directory) {
+  const Json summary = Summary(plan, trials);
+  WriteFile(directory / "trials.csv", TrialsCsv(trials));
+  WriteFile(directory / "summary.json", summary.dump(1) + "\n");
+  Draw(directory / "summary.json", directory / "summary.png");
+  return summary;
+}
+
+}  // namespace regrasp::cli

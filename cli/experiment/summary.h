@@ -1,0 +1,28 @@
+#pragma once
+
+/// What an experiment found, made from its rows: the same bytes whatever ran them, in whatever
+/// order.
+
+#include "cli/context.h"
+#include "cli/experiment/store.h"
+
+namespace regrasp::cli {
+
+/// RFC 4180, a line for each row in the order of the plan.
+std::string TrialsCsv(const Trials& trials);
+
+/// {"experiment": the plan, "trials": n, "groups": [{"noise", "estimator", "finger" | "axis_W",
+/// "n", "counts": {NAME: {"k", "share", "low", "high"}}, "quantiles": {COLUMN: {"n", "min", "q05",
+/// "q25", "median", "q75", "q95", "max", "mean"}}}]}. Shares are of all n trials, also of those
+/// that were not grasped or refused, with Wilson's 95 % interval. Explorations with several fingers
+/// also have a group "all" for each noise and estimator.
+Json Summary(const Plan& plan, const Trials& trials);
+
+/// The groups as a table for people.
+std::string SummaryTable(const Output& out, const Json& summary);
+
+/// Writes trials.csv, summary.json and summary.png into `directory`. Returns the summary. Throws
+/// CliError.
+Json WriteResults(const Plan& plan, const Trials& trials, const std::filesystem::path& directory);
+
+}  // namespace regrasp::cli

@@ -1,0 +1,152 @@
+#include "cli/experiment/trial.h"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "cli/errors.h"
+#include "cli/experiment/phi_map.h"
+#include "cli/print.h"
+
+namespace regrasp::cli {
+namespace {
+
+constexpr std::int64_t kExploreChunk = 250, kExploreLimit = 60000;  // [ticks]
+constexpr std::int64_t kRotateChunk = 1000;
+constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
+constexpr std::int64_t kHoldTicks = 1000;
+
+/// How a trial ended, in one word. `record`: of the job that was tried.
+std::string Outcome(const Json& record, const std::string& state) {
+  if (state == "faulted") return "fault";
+  if (state == "dropped" || At(record, "dropped") == true) return "dropped";
+  const std::string job = Plain(At(record, "state"));
+  if (job == "done") return "done";
+  if (job != "failed") return "unfinished";
+  if (At(record, "reason") == "contact_lost") return "contact_lost";
+  const bool began = At(record, "start_tick").is_number() &&
+                     At(record, "end_tick").get<std::int64_t>() > At(record, "start_tick");
+  return began ? "failed" : "refused";
+}
+
+double Distance(const Json& a, const Json& b) {
+  return std::hypot(a.at(0).get<double>() - b.at(0).get<double>(),
+                    a.at(1).get<double>() - b.at(1).get<double>(),
+                    a.at(2).get<double>() - b.at(2).get<double>());
+}
+
+Json ObjectPlace(SteppedDaemon* daemon) { return daemon->Call("truth").at("object").at("p_WO_m"); }
+
+/// Columns at the end of every row: what names the state reached, and how to get there again.
+void AddEnd(SteppedDaemon* daemon, const Plan& plan, const Unit& unit, const std::string& estimator,
+            const Json& record, Json* row) {
+  (*row)["start_tick"] = At(record, "start_tick");
+  (*row)["end_tick"] = At(record, "end_tick");
+  (*row)["state_hash"] = daemon->Call("status").at("state_hash");
+  (*row)["command"] = plan.Command(unit, estimator);
+}
+
+Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
+             const std::string& estimator, const std::optional<PhiMap>& map) {
+  daemon->Call("noise.set", {{"preset", unit.noise}});
+  const Json grasp = daemon->Grasp(unit.seed);
+  Json status = daemon->Call("status");
+  Json row = {{"finger", unit.subject},         {"criterion", plan.criterion},
+              {"estimator", estimator},         {"noise", unit.noise},
+              {"object", At(status, "object")}, {"seed", unit.seed},
+              {"outcome", "not_grasped"},       {"error", At(grasp, "error")}};
+  Json record, moved;
+  if (Done(grasp)) {
+    const Json before = ObjectPlace(daemon);
+    record = daemon->Run("explore",
+                         {{"finger", unit.subject},
+                          {"criterion", plan.criterion},
+                          {"estimator", estimator},
+                          {"seed", unit.seed}},
+                         kExploreChunk, kExploreLimit);
+    daemon->Step(kHoldTicks);
+    status = daemon->Call("status");
+    row["outcome"] = Outcome(record, Plain(At(status, "state")));
+    row["error"] = At(record, "error");
+    moved = Distance(ObjectPlace(daemon), before);
+  }
+  const bool slid = row["outcome"] != "not_grasped" && row["outcome"] != "refused";
+  for (const char* key : {"reason", "converged", "cycles", "phi_initial", "phi_final",
+                          "phi_true_initial", "phi_true_final"})
+    row[key] = slid ? At(record, key) : Json();
+  const bool done = row["outcome"] == "done";
+  const double from = slid ? record.at("phi_true_initial").get<double>() : 0;
+  const double to = slid ? record.at("phi_true_final").get<double>() : 0;
+  row["phi_true_gain"] = done && from > 0 ? Json(to / from - 1) : Json();
+  row["rose"] = done && to > from;
+  if (map) {
+    const bool known = map->rays > 0;
+    row["phi_best"] = known ? Json(map->best) : Json();
+    row["phi_best_distance_m"] = known ? Json(map->distance_m) : Json();
+    row["share_of_best"] = known && done ? Json(to / map->best) : Json();
+    row["near_best"] = known && done && to >= kSuccessShare * map->best;
+  }
+  row["path_length_m"] = slid ? At(record, "path_length_m") : Json();
+  row["object_moved_m"] = moved;
+  AddEnd(daemon, plan, unit, estimator, record, &row);
+  return row;
+}
+
+Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
+  daemon->Call("noise.set", {{"preset", unit.noise}});
+  const Json grasp = daemon->Grasp(unit.seed);
+  Json status = daemon->Call("status");
+  Json row = {{"axis_W", unit.subject},         {"turns", plan.turns}, {"noise", unit.noise},
+              {"object", At(status, "object")}, {"seed", unit.seed},   {"outcome", "not_grasped"},
+              {"error", At(grasp, "error")}};
+  Json record;
+  if (Done(grasp)) {
+    Json params = {{"turns", plan.turns}, {"axis", ParseNumbers(unit.subject, 3, "--axis")}};
+    if (plan.speed_deg_s > 0) params["speed_rad_s"] = plan.speed_deg_s * std::numbers::pi / 180;
+    record = daemon->Run(
+        "rotate", params, kRotateChunk,
+        kRotateLimit + static_cast<std::int64_t>(std::abs(plan.turns) * kRotateLimitPerTurn));
+    status = daemon->Call("status");
+    row["outcome"] = Outcome(record, Plain(At(status, "state")));
+    row["error"] = At(record, "error");
+  }
+  const bool turned = At(record, "angle_rad").is_number();
+  for (const char* key : {"angle_rad", "sim_time_s", "gait_cycles", "regrasps", "dropped",
+                          "max_position_error_m", "max_tilt_rad"})
+    row[key] = turned ? At(record, key) : Json();
+  const double angle = turned ? record.at("angle_rad").get<double>() : 0;
+  const double time = turned ? record.at("sim_time_s").get<double>() : 0;
+  row["angle_error_rad"] =
+      turned ? Json(std::abs(angle - 2 * std::numbers::pi * plan.turns)) : Json();
+  row["rate_deg_min"] =
+      time > 0 ? Json(std::abs(angle) * 180 / std::numbers::pi / time * 60) : Json();
+  row["completed"] = row["outcome"] == "done";
+  AddEnd(daemon, plan, unit, "", record, &row);
+  return row;
+}
+
+/// A number or three, as `param set` takes them.
+Json Value(const std::string& text, const std::string& name) {
+  if (text.find(',') == std::string::npos) return ParseNumber(text, "--set " + name);
+  return ParseNumbers(text, 3, "--set " + name);
+}
+
+}  // namespace
+
+void Prepare(SteppedDaemon* daemon, const Plan& plan) {
+  for (const auto& [name, value] : plan.set)
+    daemon->Call("param.set", {{"name", name}, {"value", Value(value, name)}});
+}
+
+std::vector<Json> RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
+  if (plan.rotation()) return {Rotate(daemon, plan, unit)};
+  std::optional<PhiMap> map;
+  if (plan.rays > 0)
+    map = MapPhi(daemon, unit.noise, unit.seed, unit.subject, plan.criterion, plan.rays);
+  std::vector<Json> rows;
+  for (const auto& estimator : plan.estimators)
+    rows.push_back(Explore(daemon, plan, unit, estimator, map));
+  return rows;
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,147 @@
+#include "snapshots/plot_experiment.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "snapshots/axes.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kTop = 150, kBottom = 90, kLeft = 230, kRight = 60, kGap = 46;
+constexpr double kRowHeight = 40;    // least
+constexpr double kMostPerMark = 22;  // height
+
+std::vector<std::string> Distinct(const ExperimentPicture& picture,
+                                  std::string ExperimentGroup::*field) {
+  std::vector<std::string> names;
+  for (const auto& group : picture.groups)
+    if (std::find(names.begin(), names.end(), group.*field) == names.end())
+      names.push_back(group.*field);
+  return names;
+}
+
+std::size_t IndexOf(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+Colour ColourOfSeries(std::size_t series) {
+  constexpr std::array kColours = {kBlue, kVermillion, kGreen, kPurple};
+  return kColours[series % kColours.size()];
+}
+
+/// The first share is a full disc, the second an open square.
+void DrawShare(Canvas* canvas, const Panel& panel, const ShareMark& mark, std::size_t which,
+               double y, Colour colour) {
+  const double row = y, at = panel.At(100 * mark.share, 0).x;
+  canvas->Line({panel.At(100 * mark.low, 0).x, row}, {panel.At(100 * mark.high, 0).x, row},
+               {colour, which == 0 ? 2.5 : 1.5});
+  if (which == 0)
+    canvas->Mark(Marker::kDisc, {at, row}, 6, colour);
+  else
+    canvas->Mark(Marker::kSquare, {at, row}, 6, colour, kWhite);
+}
+
+void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, double y,
+                   double height, Colour colour) {
+  if (!q.has_values) return;
+  const auto x = [&](double value) { return panel.At(value, 0).x; };
+  canvas->Line({x(q.q05), y}, {x(q.q95), y}, {colour, 2});
+  const double left = x(q.q25), width = std::max(1.0, x(q.q75) - left);
+  canvas->FillBox({left, y - height / 2, width, height}, Tint(colour, 0.55));
+  canvas->Line({x(q.median), y - height / 2 - 2}, {x(q.median), y + height / 2 + 2}, {colour, 3});
+}
+
+}  // namespace
+
+void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
+  if (picture.groups.empty())
+    throw std::runtime_error(path + ": nothing to draw: the summary has no groups");
+  const auto rows = Distinct(picture, &ExperimentGroup::row);
+  const auto series = Distinct(picture, &ExperimentGroup::series);
+  const auto panels = Distinct(picture, &ExperimentGroup::panel);
+  const std::size_t marks = picture.groups.front().shares.size();
+  const double lines = static_cast<double>(series.size() * std::max<std::size_t>(1, marks));
+  const double row_height = std::max(kRowHeight, 15 * lines + 12);
+  const double blocks = static_cast<double>(panels.size());
+  const double block = row_height * static_cast<double>(rows.size());
+  const int height =
+      static_cast<int>(std::max(600.0, kTop + blocks * block + (blocks - 1) * kGap + kBottom));
+  Canvas canvas(1600, height, path);
+  const double unit_height = canvas.height(), unit_width = canvas.width();
+  DrawTitle(&canvas, picture.title, picture.facts);
+
+  Range range;
+  for (const auto& group : picture.groups)
+    if (group.measure.has_values)
+      for (const double value : {group.measure.q05, group.measure.q95}) range.Add(value);
+  if (range.empty()) range.Add(0);
+  const Axis measure = NiceAxis(range.lo, range.hi, 6, true, picture.measure_label);
+  const Axis share = NiceAxis(0, 100, 5, false, "share of trials, 95 % interval  [%]");
+  const double free = unit_width - kLeft - kRight - 60;
+  const double left_width = free * 0.52, right_width = free * 0.48;
+  const double stretch = (unit_height - kTop - kBottom - (blocks - 1) * kGap) / (blocks * block);
+
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    const double top = kTop + static_cast<double>(p) * (block * stretch + kGap);
+    const Box left_box(kLeft, top, left_width, block * stretch);
+    const Box right_box(kLeft + left_width + 60, top, right_width, block * stretch);
+    const Axis none{0.2, 0.8, 1, ""};  // no ticks
+    const Panel left{left_box, share, none}, right{right_box, measure, none};
+    const bool last = p + 1 == panels.size();
+    DrawGrid(&canvas, left, last);
+    DrawGrid(&canvas, right, last);
+    if (!panels[p].empty()) canvas.Text({kLeft, top - 16}, panels[p], {.size = 19, .bold = true});
+    const double h = row_height * stretch;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const double y = top + h * static_cast<double>(r);
+      if (r > 0)
+        for (const Box& box : {left_box, right_box})
+          canvas.Line({box.x, y}, {box.x + box.width, y}, {kGridGrey, 1});
+      canvas.Text({kLeft - 14, y + h / 2}, rows[r], {.size = 18, .align_x = AlignX::kRight});
+    }
+    for (const auto& group : picture.groups) {
+      if (group.panel != panels[p]) continue;
+      const std::size_t s = IndexOf(series, group.series);
+      const double y = top + h * static_cast<double>(IndexOf(rows, group.row));
+      const double n = static_cast<double>(series.size());
+      const double slot = std::min((h - 12) / n, kMostPerMark * static_cast<double>(marks));
+      const double begin = y + (h - slot * n) / 2 + slot * static_cast<double>(s);
+      for (std::size_t m = 0; m < group.shares.size(); ++m)
+        DrawShare(&canvas, left, group.shares[m], m,
+                  begin + slot * (static_cast<double>(m) + 0.5) / static_cast<double>(marks),
+                  ColourOfSeries(s));
+      DrawQuantiles(&canvas, right, group.measure, begin + slot / 2, std::min(16.0, slot * 0.6),
+                    ColourOfSeries(s));
+    }
+    DrawFrame(&canvas, left);
+    DrawFrame(&canvas, right);
+  }
+
+  double x = kLeft;
+  const auto entry = [&](const std::string& text, auto&& draw) {
+    draw(Point2{x + 12, 112});
+    canvas.Text({x + 32, 112}, text, {.size = 17});
+    x += 60 + canvas.TextWidth(text, 17);
+  };
+  for (std::size_t m = 0; m < marks; ++m)
+    entry(picture.groups.front().shares[m].name, [&](Point2 at) {
+      if (m == 0)
+        canvas.Mark(Marker::kDisc, at, 6, kInk);
+      else
+        canvas.Mark(Marker::kSquare, at, 6, kInk, kWhite);
+    });
+  if (series.size() > 1)
+    for (std::size_t s = 0; s < series.size(); ++s)
+      entry(series[s], [&](Point2 at) {
+        canvas.FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
+      });
+  entry("5, 25, 50, 75, 95 % of the trials", [&](Point2 at) {
+    canvas.Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
+    canvas.FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));
+    canvas.Line({at.x, at.y - 9}, {at.x, at.y + 9}, {kGrey, 3});
+  });
+  canvas.Save();
+}
+
+}  // namespace regrasp

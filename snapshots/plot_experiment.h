@@ -1,0 +1,39 @@
+#pragma once
+
+/// The picture of an experiment's summary.
+
+#include <string>
+#include <vector>
+
+namespace regrasp {
+
+/// A share of trials with its interval, all in [0, 1].
+struct ShareMark {
+  std::string name;  ///< "φ rose"
+  double share = 0, low = 0, high = 1;
+};
+
+/// Five-number summary of one measured quantity; has_values false: nothing was measured.
+struct QuantileMark {
+  bool has_values = false;
+  double q05 = 0, q25 = 0, median = 0, q75 = 0, q95 = 0;
+};
+
+struct ExperimentGroup {
+  std::string row, series, panel;  ///< label at the left, colour, and panel; may be empty
+  std::vector<ShareMark> shares;
+  QuantileMark measure;
+};
+
+struct ExperimentPicture {
+  std::string title, facts;
+  std::string measure_label;  ///< with its unit
+  std::vector<ExperimentGroup> groups;
+};
+
+/// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of the measured
+/// quantity beside them. Groups of several panels go side by side. Throws std::runtime_error with
+/// `path` as the other pictures do (snapshots.h).
+void PlotExperiment(const ExperimentPicture& picture, const std::string& path);
+
+}  // namespace regrasp
