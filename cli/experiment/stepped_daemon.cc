@@ -37,7 +37,7 @@ void SteppedDaemon::Step(std::int64_t ticks) {
 }
 
 Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
-                        std::int64_t max_ticks) {
+                        std::int64_t max_ticks, const std::function<void()>& look) {
   Json job;
   try {
     job = Call(method, params);
@@ -48,6 +48,7 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
   Json record;
   for (std::int64_t ticks = 0; ticks < max_ticks; ticks += chunk_ticks) {
     Step(chunk_ticks);
+    if (look) look();
     record = Call("job.get", {{"id", job.at("job")}});
     if (!Running(record)) break;
   }

@@ -4,6 +4,7 @@
 /// then depends on its seed and commands alone, never on how fast anything is.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,9 @@ class SteppedDaemon {
   void Step(std::int64_t ticks);
   /// Sends a command that starts a job and steps in chunks until the job has ended, or has not
   /// after `max_ticks`. Returns its record. A command that is refused at once gives a record whose
-  /// state is "failed" and whose error says why.
+  /// state is "failed" and whose error says why. `look` is called after each chunk.
   Json Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
-           std::int64_t max_ticks);
+           std::int64_t max_ticks, const std::function<void()>& look = {});
   /// A new run in which the object is in the hand. Returns the record of the grasp.
   Json Grasp(std::int64_t seed);
 
