@@ -1,5 +1,6 @@
 // Searches the generic preshape and closed posture of a hand for its scenario file.
 //   posture [--hand NAME] [--seed S] [--steps N] [--radius MM] [--tilt DEG] [--reach 0..1]
+//           [--keep 1]   keeps the scenario's object, closed posture and touch; only the way in
 // Random hill climbing, from the scenario as it is and within `reach` of it, over object position,
 // contact directions and redundant joint angles. A posture is good when the grasp without each
 // finger in turn (the thumb above all) keeps a load margin, joints are far from their limits, no
@@ -164,6 +165,103 @@ void Evaluate(const HandModel& hand, double radius, const Vector3d& gravity, Can
              std::min(0.0, (c->clearance - 0.005) / 0.001);
 }
 
+/// Where finger `f` first touches on its straight way from `open` to `closed`: its joints there.
+/// False when it never does.
+bool Touch(const HandModel& hand, const JointVector& open, const JointVector& closed,
+           const Vector3d& p_WO, double radius, int f, JointVector* q) {
+  KinematicsData data;
+  JointVector way = *q;
+  for (int k = 0; k <= 200; ++k) {
+    for (int j : hand.fingers[f].joints) way[j] = open[j] + k / 200.0 * (closed[j] - open[j]);
+    ForwardKinematics(hand, way, &data);
+    const double distance = (FingertipCentre(hand, data, f) - p_WO).norm();
+    if (distance > radius + hand.fingers[f].tip_radius) continue;
+    *q = way;
+    return true;
+  }
+  return false;
+}
+
+/// The way in of finger `f`: a straight line in joint space through its joints in `grip`, from
+/// `gap` off the object to `depth` inside it, so that it touches where `grip` does. Random search
+/// over directions for joints off their limits, links clear of each other and a short, straight
+/// way; the best goes into `open` and `closed`.
+void FindWayIn(const HandModel& hand, const Candidate& grip, double radius, double gap,
+               double depth, int f, RandomStream* random, JointVector* open, JointVector* closed) {
+  constexpr int kTrials = 1500;
+  constexpr double kStep = 0.02;  // rad
+  const auto& joints = hand.fingers[f].joints;
+  KinematicsData data;
+  ForwardKinematics(hand, grip.q, &data);
+  const Vector3d tip = FingertipCentre(hand, data, f);
+  const Vector3d touch = (tip - grip.p_WO).normalized();
+  const FingerJacobian J = PointJacobian(hand, data, f, tip);
+  const FingerVector radial =
+      J.transpose() * (J * J.transpose() + 1e-5 * Matrix3d::Identity()).inverse() * touch;
+  double best = -1e9;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    FingerVector direction = radial.normalized();
+    for (Eigen::Index k = 0; k < direction.size(); ++k) direction[k] += 0.4 * random->Normal();
+    direction.normalize();
+    // Along the line from the grip until the tip is `until` from the surface; false at a limit.
+    const auto Go = [&](double sign, double until, JointVector* q) {
+      for (int k = 0; k < 80; ++k) {
+        ForwardKinematics(hand, *q, &data);
+        const double off = (FingertipCentre(hand, data, f) - grip.p_WO).norm() - radius -
+                           hand.fingers[f].tip_radius;
+        if (sign * off >= sign * until) return true;
+        for (std::size_t n = 0; n < joints.size(); ++n) {
+          const Joint& joint = hand.joints[joints[n]];
+          double& angle = (*q)[joints[n]];
+          angle += sign * kStep * direction[static_cast<Eigen::Index>(n)];
+          if (angle < joint.lower || angle > joint.upper) return false;
+        }
+      }
+      return false;
+    };
+    JointVector out = *open, in = *closed;
+    for (int j : joints) out[j] = in[j] = grip.q[j];
+    if (!Go(-1, -depth, &in) || !Go(1, gap, &out)) continue;
+    double margin = 1, length = 0;
+    for (int j : joints) {
+      for (double q : {out[j], in[j]})
+        margin = std::min({margin, q - hand.joints[j].lower, hand.joints[j].upper - q});
+      length = std::hypot(length, out[j] - in[j]);
+    }
+    ForwardKinematics(hand, out, &data);
+    const double clearance = Clearance(hand, data, grip.p_WO, radius);
+    const double drift = ((FingertipCentre(hand, data, f) - grip.p_WO).normalized() - touch).norm();
+    const double score = 2 * std::min(margin, 0.1) / 0.1 - drift / 0.3 - 0.3 * length +
+                         std::min(0.0, (clearance - 0.005) / 0.001);
+    if (score <= best) continue;
+    best = score;
+    *open = out;
+    *closed = in;
+  }
+  if (best == -1e9) std::fprintf(stderr, "%s finds no way in\n", hand.fingers[f].name.c_str());
+}
+
+/// Smallest gap between links while all fingers close from `open` to `closed`, each until it
+/// touches a ball of `radius`; `landed` gets the posture in which all touch.
+double GapOnTheWay(const HandModel& hand, const JointVector& open, const JointVector& closed,
+                   const Vector3d& p_WO, double radius, JointVector* landed) {
+  constexpr int kSteps = 40;
+  KinematicsData data;
+  double gap = 1e9;
+  *landed = open;
+  for (int k = 0; k <= kSteps; ++k) {
+    ForwardKinematics(hand, *landed, &data);
+    gap = std::min(gap, Clearance(hand, data, p_WO, 0.5 * radius));
+    for (int f = 0; f < hand.num_fingers(); ++f) {
+      if ((FingertipCentre(hand, data, f) - p_WO).norm() < radius + hand.fingers[f].tip_radius)
+        continue;
+      for (int j : hand.fingers[f].joints)
+        (*landed)[j] = open[j] + (closed[j] - open[j]) * k / kSteps;
+    }
+  }
+  return gap;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -171,6 +269,7 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 1;
   int steps = 20000;
   double radius = 0.025, tilt = 65, reach = 1;
+  bool keep = false;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string a = argv[i];
     if (a == "--hand") name = argv[i + 1];
@@ -178,6 +277,7 @@ int main(int argc, char** argv) {
     if (a == "--steps") steps = std::stoi(argv[i + 1]);
     if (a == "--radius") radius = std::stod(argv[i + 1]) * 1e-3;
     if (a == "--reach") reach = std::stod(argv[i + 1]);
+    if (a == "--keep") keep = std::stoi(argv[i + 1]) != 0;
     if (a == "--tilt") tilt = std::stod(argv[i + 1]);
   }
   const LoadedScenario model = LoadScenario(name, "", ModelSearchPath());
@@ -201,6 +301,12 @@ int main(int argc, char** argv) {
   best.p_WO = model.scenario.X_WO.translation();
   for (int f = 0; f < hand.num_fingers(); ++f)
     SolveTip(hand, f, TipTarget(best, f, Direction(best, f), radius), &best.q);
+  if (keep) {
+    steps = 0;
+    for (int f = 0; f < hand.num_fingers(); ++f)
+      Touch(hand, model.scenario.q_preshape, model.scenario.q_closed, best.p_WO, radius, f,
+            &best.q);
+  }
   Evaluate(hand, radius, gravity, &best);
   std::fprintf(stderr, "start: score %.3f\n", best.score);
 
@@ -227,14 +333,31 @@ int main(int argc, char** argv) {
     if (c.score > best.score) best = c;
   }
 
-  // The way in: every tip on the straight line through the object's centre.
+  constexpr double kGap = 0.018;     // leaves 9 mm to a sphere of 68 mm diameter
+  constexpr double kDepth = 0.0075;  // reaches into a sphere of 35 mm diameter
+  constexpr double kClear = 0.005;
+  constexpr int kWays = 20;
   Candidate open = best, closed = best;
-  for (int f = 0; f < hand.num_fingers(); ++f) {
-    const Vector3d direction = Direction(best, f);
-    for (double d = 0; d <= 0.012; d += 0.001)
-      if (!SolveTip(hand, f, TipTarget(best, f, direction, radius - d), &closed.q)) break;
-    for (double d = 0; d <= 0.018; d += 0.001)
-      if (!SolveTip(hand, f, TipTarget(best, f, direction, radius + d), &open.q)) break;
+  double way_score = -1e9;
+  for (int attempt = 0; attempt < kWays; ++attempt) {
+    JointVector out = best.q, in = best.q, landed;
+    for (int f = 0; f < hand.num_fingers(); ++f)
+      FindWayIn(hand, best, radius, kGap, kDepth, f, &random, &out, &in);
+    double gap = 1e9;
+    Candidate other = best;
+    double score = 0;
+    for (double r : {radius + 0.005, radius - 0.0025}) {  // the claimed sizes
+      gap = std::min(gap, GapOnTheWay(hand, out, in, best.p_WO, r, &landed));
+      other.q = landed;
+      Evaluate(hand, r, gravity, &other);
+      score += other.score;
+    }
+    score += std::min(0.0, (gap - kClear) / 0.001);
+    if (score <= way_score) continue;
+    way_score = score;
+    open.q = out;
+    closed.q = in;
+    std::fprintf(stderr, "way in %d: score %.3f, gap %.1f mm\n", attempt, score, 1e3 * gap);
   }
   Evaluate(hand, radius, gravity, &open);
   Evaluate(hand, radius, gravity, &closed);

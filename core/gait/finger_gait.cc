@@ -16,7 +16,7 @@ constexpr double kFoundShare = 0.5;  // weight of the newest exploration's end
 constexpr double kInsideDisc = 0.9;  // of the disc's radius: what is remembered lies inside it
 constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
 constexpr int kSearchLimit = 300;    // evaluations
-constexpr int kIdleCycles = 2;       // cycles without progress before the gait gives up
+constexpr int kIdleCycles = 3;       // cycles without progress before the gait gives up
 
 }  // namespace
 
@@ -112,7 +112,6 @@ void FingerGait::EndMotion() {
   turned_before_ += manipulation_.turned();
   turned_in_cycle_ = manipulation_.turned();
   waiting_ = fingers_;
-  regrasps_in_cycle_ = 0;
   refused_finger_ = -1;
 }
 
@@ -189,8 +188,7 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
 
 void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameters) {
   if (turned_before_ > 0) ++cycles_;
-  const bool idle = turned_in_cycle_ < kProgress && regrasps_in_cycle_ == 0;
-  idle_cycles_ = idle ? idle_cycles_ + 1 : 0;
+  idle_cycles_ = turned_in_cycle_ < kProgress ? idle_cycles_ + 1 : 0;
   if (idle_cycles_ <= kIdleCycles) {
     StartMotion(parameters);
     return;
@@ -296,8 +294,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
         Enter(GaitPhase::kRecover);
       } else {
         ++regrasps_;
-        ++regrasps_in_cycle_;
-        Enter(GaitPhase::kChoose);
+              Enter(GaitPhase::kChoose);
       }
       break;
     }

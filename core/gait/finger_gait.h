@@ -119,7 +119,7 @@ class FingerGait {
   bool have_margins_ = false;
   unsigned waiting_ = 0;  // bits of the fingers that have not had their turn in this cycle
   double turned_before_ = 0, turned_in_cycle_ = 0;
-  int regrasps_in_cycle_ = 0, idle_cycles_ = 0;
+  int idle_cycles_ = 0;
   int refused_finger_ = -1;  // in this cycle
   double refused_margin_ = 0;
   int cycles_ = 0, regrasps_ = 0;

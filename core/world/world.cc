@@ -294,8 +294,15 @@ Vector3d World::Impl::Preload(const ObjectHit& hit) const {
   }
   const double normal_force = force.dot(ToVector(hit.geom.normal));
   if (count == 0 || normal_force <= 0) return Vector3d::Zero();
-  // Never more than the contact's spring holds now, so that a parting contact lets go at once.
-  const double spring = count * config.contact_stiffness * hit.geom.depth;
+  // Never more than the contact's spring and damper hold now, so that a parting contact lets go at
+  // once.
+  const dReal* at = hit.geom.pos;
+  dVector3 v_object, v_link = {0, 0, 0};
+  dBodyGetPointVel(object_body, at[0], at[1], at[2], v_object);
+  if (hit.body) dBodyGetPointVel(hit.body, at[0], at[1], at[2], v_link);
+  const double parting = ToVector(hit.geom.normal).dot(ToVector(v_object) - ToVector(v_link));
+  const double spring = count * std::max(0.0, config.contact_stiffness * hit.geom.depth -
+                                                  config.contact_damping * std::max(0.0, parting));
   return std::min(1.0, spring / normal_force) * config.contact_warm_start / count * force;
 }
 

@@ -110,11 +110,12 @@ TEST(ShadowScenario, GravityIsThatOfTheTilt) {
   EXPECT_NEAR(std::atan2(g.z(), g.y()) * 180 / M_PI, 65, 1e-4);
 }
 
-TEST(ShadowScenario, PreshapeLeavesRoomForThirtyMillimetresOfRadius) {
+TEST(ShadowScenario, PreshapeLeavesRoomForAnyClaimedObject) {
   const LoadedScenario loaded = Shadow();
   const Clearance c =
       Measure(loaded.hand, loaded.scenario.q_preshape, loaded.scenario.X_WO.translation());
-  EXPECT_GT(c.to_point, 0.030);
+  // 30 mm, the largest object's radius, and 5 mm for the spread of starts (3 deg, 2 mm).
+  EXPECT_GT(c.to_point, 0.035);
   EXPECT_GT(c.between_fingers, 0.003);  // touching links double the cost of a step
 }
 
