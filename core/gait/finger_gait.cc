@@ -16,6 +16,7 @@ constexpr double kFoundShare = 0.5;  // weight of the newest exploration's end
 constexpr double kInsideDisc = 0.9;  // of the disc's radius: what is remembered lies inside it
 constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
 constexpr int kSearchLimit = 300;    // evaluations
+constexpr double kMostLead = 0.35;   // rad
 constexpr int kIdleCycles = 3;       // cycles without progress before the gait gives up
 
 }  // namespace
@@ -92,7 +93,8 @@ void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
 
 void FingerGait::Remember(int finger, const Estimate& estimate, const ObjectWrench& wrench,
                           const GaitParameters& parameters) {
-  const Vector3d shift = estimate.fingers[finger].p_WC - wrench.p_ref() - home_stance_[finger].p_OC;
+  const Vector3d shift =
+      estimate.fingers[finger].p_WC - wrench.p_ref() - HomeOf(finger, parameters).p_OC;
   Vector3d& found = found_[finger];
   found += kFoundShare * (shift - found);
   const double limit = kInsideDisc * parameters.disc_radius;
@@ -111,22 +113,30 @@ void FingerGait::StartMotion(const GaitParameters& parameters) {
 void FingerGait::EndMotion() {
   turned_before_ += manipulation_.turned();
   turned_in_cycle_ = manipulation_.turned();
+  if (const int finger = manipulation_.end_finger(); finger >= 0) {
+    double& lead = lead_[finger];
+    lead = std::min(kMostLead, lead + 0.5 * (manipulation_.angle() - turned_in_cycle_));
+  }
   waiting_ = fingers_;
   refused_finger_ = -1;
 }
 
+StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) const {
+  const double lead = parameters.lead * parameters.step_rad + lead_[finger];
+  const Quaterniond ahead = FromRotationVector(-sign_ * lead * request_.axis_W);
+  const StanceContact& first = home_stance_[finger];
+  return {ahead * first.p_OC, ahead * first.p_OF, ahead * first.normal_W};
+}
+
 Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const GaitParameters& parameters) const {
-  const Quaterniond ahead =
-      FromRotationVector(-sign_ * parameters.lead * parameters.step_rad * request_.axis_W);
-  const StanceContact& home = home_stance_[finger];
+  const StanceContact home = HomeOf(finger, parameters);
   if (parameters.mode == static_cast<double>(GaitMode::kExploring)) {
     const StanceContact found = Shifted(home, TangentPart(found_[finger], home.normal_W));
     return {wrench.p_ref() + home.p_OC, wrench.p_ref() + home.p_OF, home.normal_W,
             wrench.p_ref() + found.p_OC};
   }
-  return {wrench.p_ref() + ahead * home.p_OC, wrench.p_ref() + ahead * home.p_OF,
-          ahead * home.normal_W, wrench.p_ref()};
+  return {wrench.p_ref() + home.p_OC, wrench.p_ref() + home.p_OF, home.normal_W, wrench.p_ref()};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
@@ -294,7 +304,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
         Enter(GaitPhase::kRecover);
       } else {
         ++regrasps_;
-              Enter(GaitPhase::kChoose);
+        Enter(GaitPhase::kChoose);
       }
       break;
     }
@@ -338,6 +348,7 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   for (double margin : smooth_.without) hasher->Add(margin);
   search_.AddTo(hasher);
   for (const Vector3d& found : found_) hasher->Add(found);
+  for (double lead : lead_) hasher->Add(lead);
   for (const StanceContact& contact : home_stance_) hasher->Add(contact.p_OF);
   manipulation_.AddTo(hasher);
   regrasp_.AddTo(hasher);

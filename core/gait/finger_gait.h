@@ -95,6 +95,8 @@ class FingerGait {
   void Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
             const ObjectWrench& wrench, const GaitParameters& parameters, double dt);
   void EndCycle(const HandModel& hand, const GaitParameters& parameters);
+  /// Where the finger comes back to, from the object reference: its first contact, turned back.
+  StanceContact HomeOf(int finger, const GaitParameters& parameters) const;
   Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench,
                            const GaitParameters& parameters) const;
   bool Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
@@ -113,6 +115,10 @@ class FingerGait {
   // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The
   // next exploration of the finger goes there from the first contact, then Algorithm 1 takes over.
   std::array<Vector3d, kMaxFingers> found_{};
+  // By how much each finger's target is turned back about the axis: half of what a motion that
+  // ended at this finger's limit still wanted is added, so that it has more way the next time
+  // [rad].
+  std::array<double, kMaxFingers> lead_{};
   LocalManipulation manipulation_;
   Regrasp regrasp_;
   Margins smooth_;  // margins, low-passed

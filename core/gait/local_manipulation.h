@@ -43,6 +43,7 @@ class LocalManipulation {
 
   End end() const { return end_; }
   int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
+  double angle() const { return angle_; }         ///< wanted [rad]
   double turned() const { return turned_; }       ///< of the reference since Start [rad]
   double speed() const { return speed_; }         ///< [rad/s]
   void AddTo(StateHasher* hasher) const;
