@@ -323,7 +323,7 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
       refused += e.kind == EventKind::kRefused;
       if (e.kind != EventKind::kRegrasp) continue;
       const RegraspRecord& r = session.last_regrasp();
-      if (r.criterion != Criterion::kStability && !r.on_stability && !r.aborted)
+      if (r.criterion != Criterion::kStability && !r.on_stability && !r.aborted && r.phi_start > 0)
         changes.push_back({r.finger, r.phi_before, r.phi_start, r.phi_after});
     }
     for (const JobRecord& j : session.TakeFinishedJobs()) job = j;

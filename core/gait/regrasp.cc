@@ -109,6 +109,8 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
       Enter(Phase::kExplore);
     } else {
       task->v_W = error * std::min(parameters.slide_gain, parameters.slide_speed / distance);
+      for (const Wall& wall : input.walls)
+        task->v_W -= std::max(0.0, task->v_W.dot(wall.direction_W)) * wall.direction_W;
     }
     return;
   }
