@@ -2,17 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <sstream>
-#include <thread>
 
 #include "cli/context.h"
-#include "cli/experiment/runner.h"
-#include "cli/experiment/stepped_daemon.h"
+#include "cli/experiment/experiments.h"
+#include "cli/experiment/paper.h"
 #include "cli/experiment/summary.h"
-#include "cli/experiment/trial.h"
-#include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
 namespace {
@@ -21,31 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGroup = "Results";
 constexpr double kMostSeeds = 1e6;
-
-/// What can only be known from a daemon: the fingers' names, and whether it takes the parameters.
-void Complete(Plan* plan) {
-  SteppedDaemon daemon(plan->DaemonArguments());
-  plan->version = Plain(daemon.Call("version").at("version"));
-  plan->build = DaemonBuild();
-  Prepare(&daemon, *plan);
-  if (plan->rotation()) return;
-  std::vector<std::string> fingers;
-  const Json contacts = daemon.Call("contacts");
-  for (const auto& [name, finger] : Named(contacts.at("fingers"), "finger"))
-    fingers.push_back(name);
-  if (plan->subjects == std::vector<std::string>{"all"}) {
-    plan->subjects = fingers;
-    return;
-  }
-  for (const auto& name : plan->subjects) {
-    if (std::find(fingers.begin(), fingers.end(), name) != fingers.end()) continue;
-    const auto nearest = NearestName(name, fingers);
-    throw CliError(kUsage,
-                   fmt::format("--finger '{}' is none of {}, all", name, fmt::join(fingers, ", ")),
-                   fmt::format("regrasp experiment {} --finger {} -o DIR", plan->experiment,
-                               nearest.empty() ? "all" : nearest));
-  }
-}
 
 void Print(Context& context, const Json& summary, const fs::path& directory) {
   Json answer = summary;
@@ -65,21 +36,9 @@ ExitCode Experiment(Context& context, const Invocation& invocation) {
   const Interruptible interruptible;
   const std::string name = invocation.command->words.substr(std::string("experiment ").size());
   Plan plan = PlanFromArguments(name, invocation);
-  Complete(&plan);
+  CompletePlan(&plan);
   const fs::path directory = invocation.Text("output");
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int workers =
-      static_cast<int>(ParseNumber(invocation.Text("workers", std::to_string(cores)), "--workers"));
-  Store store(directory, plan);
-  try {
-    RunPlan(context, plan, workers, &store);
-  } catch (const CliError& error) {
-    throw CliError(error.code,
-                   fmt::format("{}; {} of {} finished and are kept in {}", error.what(),
-                               store.trials().size(), plan.Mine().size(), directory.string()),
-                   "the same command again goes on");
-  }
-  Print(context, WriteResults(plan, store.trials(), directory), directory);
+  Print(context, RunExperiment(context, plan, Workers(invocation), directory), directory);
   return kOk;
 }
 
@@ -199,6 +158,23 @@ std::vector<CommandSpec> ExperimentCommands() {
       {"experiment noise-sweep", kGroup,
        "explorations at every noise preset, the estimators side by side", nullptr,
        With(ExplorationArgs("both"), "20", "off,fine,paper,coarse,taxel"), Experiment},
+      {"experiment paper",
+       kGroup,
+       "everything the paper shows, measured again: figures, trials and a page",
+       nullptr,
+       {Number("seed", "--seed", ArgKind::kInteger, "N", "first seed", 0,
+               kMaxSafeInteger - kMostSeeds, "1"),
+        Number("seeds", "-n,--seeds", ArgKind::kInteger, "N",
+               "repetitions, and seeds a finger; a fifth of it for the sweep and the rotations", 1,
+               kMostSeeds, "50, as in the paper"),
+        Text("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
+        Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360,
+               "12"),
+        Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        Number("workers", "--workers", ArgKind::kInteger, "N", "daemons at work", 1, 256,
+               "one per core"),
+        OutputDirectory()},
+       Paper},
       {"experiment merge",
        kGroup,
        "join the shards of an experiment",

@@ -12,7 +12,7 @@
 namespace regrasp::cli {
 namespace {
 
-constexpr std::int64_t kSampleTicks = 20;  // 0.3 mm at 15 mm/s
+constexpr std::int64_t kSampleTicks = 50;  // 0.75 mm at 15 mm/s
 constexpr double kTimeShare = 1.8;         // of the time that the way to the excursion bound takes
 constexpr std::int64_t kTransferLimit = 5000;  // load transfer before and after [ticks]
 constexpr double kTick_s = 1e-3;

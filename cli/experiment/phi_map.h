@@ -10,7 +10,7 @@ struct PhiMap {
   double best = 0;        ///< largest noise-free phi on any ray
   double distance_m = 0;  ///< of that contact from where the rays begin
   int rays = 0;           ///< that could be slid along
-  Json samples;           ///< [{ray, p_WC_m[3], phi}], every 20 ticks
+  Json samples;           ///< [{ray, p_WC_m[3], phi}], every 50 ticks
 };
 
 /// Slides `finger` from the state in which it holds the object along `rays` rays, spread evenly

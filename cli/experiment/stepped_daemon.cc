@@ -32,8 +32,6 @@ SteppedDaemon::SteppedDaemon(std::vector<std::string> arguments)
 void SteppedDaemon::Step(std::int64_t ticks) {
   const Json step = Call("step", {{"ticks", ticks}});
   Call("job.wait", {{"id", step.at("job")}});
-  // Paused it is already: the answer comes when all that the last tick did has been told.
-  Call("pause");
 }
 
 Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
@@ -49,6 +47,9 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
   for (std::int64_t ticks = 0; ticks < max_ticks; ticks += chunk_ticks) {
     Step(chunk_ticks);
     if (look) look();
+    // Paused it is already: the answer comes when all that the last tick did has been told, a job
+    // that ended among it.
+    Call("pause");
     record = Call("job.get", {{"id", job.at("job")}});
     if (!Running(record)) break;
   }

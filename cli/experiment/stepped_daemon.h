@@ -21,7 +21,8 @@ class SteppedDaemon {
   Json Call(const std::string& method, const Json& params = Json::object()) {
     return client_.Call(method, params);
   }
-  /// Advances by `ticks`; what Call() then tells is about the last of them.
+  /// Advances by `ticks`; the topics (status, truth, quality, ...) are then those of the last of
+  /// them.
   void Step(std::int64_t ticks);
   /// Sends a command that starts a job and steps in chunks until the job has ended, or has not
   /// after `max_ticks`. Returns its record. A command that is refused at once gives a record whose

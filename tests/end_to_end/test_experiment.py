@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import shlex
 import signal
 import subprocess
@@ -139,6 +140,22 @@ class Results(ExperimentCase):
                             "-o", self.dir / "sweep")
         self.assertEqual([(row["noise"], row["estimator"]) for row in self.rows("sweep")],
                          [("off", "least_squares"), ("off", "secant"), ("paper", "least_squares"), ("paper", "secant")])
+
+
+class Paper(ExperimentCase):
+    def test_one_command_writes_the_page(self):
+        self.run_experiment("paper", "-n", "1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models", "-o", self.dir)
+        page = (self.dir / "reproduction.md").read_text()
+        for picture in re.findall(r"\]\((reproduction/[^)]*\.png)\)", page):
+            self.assertTrue((self.dir / picture).read_bytes().startswith(b"\x89PNG"), picture)
+        for figure in ("figure1.png", "figure2.png", "figure3a.png", "figure3b.png", "sweep/summary.png"):
+            self.assertIn(f"(reproduction/{figure})", page)
+        claims = [line.split(" | ") for line in page.splitlines() if line.startswith("| ") and line.endswith((" yes |", " partly |", " no |"))]
+        self.assertGreaterEqual(len(claims), 12)
+        # The page's own numbers are those of its summaries.
+        group = next(g for g in self.summary("reproduction/exploration")["groups"] if g["estimator"] == "least_squares")
+        rose = group["counts"]["rose"]["k"]
+        self.assertIn(f"{rose}/1", next(c for c in claims if "Alg. 1" in c[0])[1])
 
 
 class Refusals(ExperimentCase):
