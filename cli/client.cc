@@ -48,7 +48,7 @@ sockaddr_un Address(const std::string& path) {
   }
   if (error == ECONNREFUSED) {
     throw CliError(kNoDaemon, fmt::format("no daemon: nobody listens on {} (stale socket)", path),
-                   "regrasp up");
+                   "regrasp up    (takes the socket over)");
   }
   throw CliError(kNoDaemon, fmt::format("cannot connect to {}: {}", path, std::strerror(error)),
                  "regrasp doctor");

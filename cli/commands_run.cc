@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cli/config_file.h"
 #include "cli/context.h"
 #include "cli/daemon_process.h"
 #include "cli/demo.h"
@@ -58,7 +59,7 @@ std::vector<std::string> DaemonWords(const Invocation& invocation) {
 ExitCode Up(Context& context, const Invocation& invocation) {
   const Interruptible interruptible;
   const std::string socket =
-      ResolveSocketPath(context.options().socket, "", SocketUse::kListen).path;
+      ResolveSocketPath(context.options().socket, ConfiguredSocket(), SocketUse::kListen).path;
   const auto words = DaemonWords(invocation);
   const bool running = Listening(socket);
   Json answer = {{"started", !running}, {"socket", socket}};
@@ -89,9 +90,13 @@ ExitCode Up(Context& context, const Invocation& invocation) {
 ExitCode Down(Context& context, const Invocation&) {
   const Interruptible interruptible;
   const std::string socket = ClientSocket(context.options().socket);
-  StopDaemon(socket, context.timeout_s());
-  context.Print({{"stopped", true}, {"socket", socket}},
-                [&] { context.out().Line("regraspd on " + socket + " has stopped"); });
+  const bool activated = StopDaemon(socket, context.timeout_s());
+  context.Print({{"stopped", true}, {"socket", socket}, {"activated", activated}}, [&] {
+    context.out().Line("regraspd on " + socket + " has stopped");
+    if (activated)
+      context.out().Line(
+          "  the next command starts it again; systemctl stop regraspd.socket ends that");
+  });
   return kOk;
 }
 

@@ -1,20 +1,19 @@
 // Tools: what needs no daemon, and the raw wire.
 
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 
+#include "cli/bench.h"
 #include "cli/context.h"
-#include "cli/daemon_process.h"
+#include "cli/doctor.h"
+#include "cli/examples.h"
 #include "cli/help.h"
-#include "core/protocol/socket_path.h"
+#include "cli/manual.h"
 #include "core/quality/evaluate_json.h"
 
 namespace regrasp::cli {
@@ -87,6 +86,10 @@ ExitCode Version(Context& context, const Invocation&) {
 ExitCode Help(Context& context, const Invocation& invocation) {
   std::string topic = invocation.Text("topic");
   if (invocation.Has("word")) topic += " " + invocation.Text("word");
+  if (invocation.Has("manual")) {
+    context.out().Add(ManualSource());
+    return kOk;
+  }
   const std::string text = HelpText(topic, context.out());
   if (context.options().json) {
     Json commands = Json::array();
@@ -99,11 +102,15 @@ ExitCode Help(Context& context, const Invocation& invocation) {
                         {"required", arg.required},
                         {"help", arg.help}});
       }
+      Json examples = Json::array();
+      for (const auto& example : ExamplesOf(command->words))
+        examples.push_back({{"line", example.line}, {"meaning", example.meaning}});
       commands.push_back(
           {{"words", command->words},
            {"group", command->group},
            {"sentence", command->sentence},
            {"method", command->method == nullptr ? Json() : Json(command->method->name)},
+           {"examples", examples},
            {"args", args}});
     }
     context.out().AddJson({{"commands", commands}});
@@ -116,89 +123,6 @@ ExitCode Help(Context& context, const Invocation& invocation) {
 ExitCode Completion(Context& context, const Invocation& invocation) {
   context.out().Add(CompletionScript(invocation.Text("shell")));
   return kOk;
-}
-
-struct Check {
-  std::string name, finding, next;
-  bool good;
-};
-
-Check CheckDaemonProgram() {
-  std::string daemon;
-  try {
-    daemon = FindDaemon();
-  } catch (const CliError& error) {
-    return {"regraspd", error.what(), "build it, or install the package", false};
-  }
-  // Running it also finds every shared library it needs.
-  std::string text = daemon;
-  std::string command = "'" + daemon + "' --version 2>&1";
-  if (FILE* pipe = ::popen(command.c_str(), "r")) {
-    char line[512];
-    if (std::fgets(line, sizeof line, pipe) != nullptr) text = line;
-    const int status = ::pclose(pipe);
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    if (status == 0) return {"regraspd", text + " (" + daemon + ")", "", true};
-  }
-  return {"regraspd", text, "./check installs the packages it needs (packages.txt)", false};
-}
-
-Check CheckSocket(const std::string& flag) {
-  const SocketPath socket = ResolveSocketPath(flag, "", SocketUse::kConnect);
-  const std::string cause = DistrustedDirectory(socket.path);
-  const std::string text = fmt::format("{} (from {})", socket.path, socket.source);
-  if (!cause.empty()) return {"socket", text + ": " + cause, "choose another with -s", false};
-  return {"socket", text, "", true};
-}
-
-Check CheckDaemon(Context& context) {
-  try {
-    const Json status = context.client().Call("status", Json::object());
-    const std::string version = Plain(At(status, "version"));
-    if (version != REGRASP_VERSION) {
-      return {"daemon", fmt::format("version {}, this is {}", version, REGRASP_VERSION),
-              "regrasp down, then regrasp up", false};
-    }
-    return {"daemon", fmt::format("answers, state {}", Plain(At(status, "state"))), "", true};
-  } catch (const CliError& error) {
-    // Not running is a state, not a fault.
-    return {"daemon", error.what(), error.hint, error.code == kNoDaemon};
-  }
-}
-
-Check CheckModels() {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& place : {program / "../share/regrasp/models", program / "../../../models",
-                                fs::path(REGRASP_MODELS_DIR)}) {
-    if (fs::is_directory(place / "hands", ignored))
-      return {"models", fs::canonical(place, ignored).string(), "", true};
-  }
-  return {"models", "no folder of models found", "regrasp up --models-dir DIR", false};
-}
-
-ExitCode Doctor(Context& context, const Invocation&) {
-  const std::vector<Check> checks = {CheckDaemonProgram(), CheckModels(),
-                                     CheckSocket(context.options().socket), CheckDaemon(context)};
-  Json answer = {{"ok", true}, {"checks", Json::array()}};
-  for (const auto& check : checks) {
-    answer["checks"].push_back({{"name", check.name},
-                                {"ok", check.good},
-                                {"finding", check.finding},
-                                {"next", check.next}});
-    if (!check.good) answer["ok"] = false;
-  }
-  context.Print(answer, [&] {
-    Output& out = context.out();
-    for (const auto& check : checks) {
-      out.Line(
-          fmt::format("{} {:<9}{}",
-                      check.good ? out.Paint("ok  ", Style::kGood) : out.Paint("FAIL", Style::kBad),
-                      check.name, check.finding));
-      if (!check.next.empty()) out.Line("              try: " + check.next);
-    }
-  });
-  return answer["ok"] == true ? kOk : kFailed;
 }
 
 }  // namespace
@@ -227,7 +151,20 @@ std::vector<CommandSpec> ToolCommands() {
          .required = true},
         {.key = "params", .flags = "", .metavar = "JSON", .help = "its parameters, an object"}},
        Call},
-      {"doctor", kGroup, "check program, models, socket and daemon", nullptr, {}, Doctor},
+      {"doctor", kGroup, "check program, models, physics, socket and daemon", nullptr, {}, Doctor},
+      {"bench",
+       kGroup,
+       "measure what a tick and a request cost on this machine",
+       nullptr,
+       {{.key = "seconds",
+         .flags = "--seconds",
+         .metavar = "S",
+         .kind = ArgKind::kNumber,
+         .help = "wall clock of each of its four parts",
+         .min = 0.01,
+         .max = 3600,
+         .default_text = "2"}},
+       Bench},
       {"completion",
        kGroup,
        "a completion script: eval \"$(regrasp completion bash)\"",
@@ -250,7 +187,12 @@ std::vector<CommandSpec> ToolCommands() {
        "this list, or help on a command",
        nullptr,
        {{.key = "topic", .flags = "", .metavar = "COMMAND", .help = "a command"},
-        {.key = "word", .flags = "", .metavar = "WORD", .help = "its second word: help noise set"}},
+        {.key = "word", .flags = "", .metavar = "WORD", .help = "its second word: help noise set"},
+        {.key = "manual",
+         .flags = "--manual",
+         .metavar = "",
+         .kind = ArgKind::kFlag,
+         .help = "the source of regrasp(1), for scdoc"}},
        Help},
   };
 }

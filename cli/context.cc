@@ -1,5 +1,6 @@
 #include "cli/context.h"
 
+#include <fmt/format.h>
 #include <langinfo.h>
 #include <unistd.h>
 
@@ -7,7 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "core/protocol/socket_path.h"
+#include "cli/config_file.h"
 
 namespace regrasp::cli {
 namespace {
@@ -30,10 +31,28 @@ Format FormatOf(const GlobalOptions& options) {
   return options.json ? Format::kJson : options.csv ? Format::kCsv : Format::kHuman;
 }
 
+/// Throws CliError(kProtocol) when the daemon speaks no protocol of ours.
+void CheckProtocol(Client& client) {
+  try {
+    client.Call("hello", {{"protocol", {kWireVersion, kWireVersion}}});
+  } catch (const CliError& error) {
+    if (error.rpc_code != static_cast<int>(ErrorCode::kProtocolVersion)) throw;
+    throw CliError(
+        kProtocol, fmt::format("{}: {} (regrasp {})", client.path(), error.what(), REGRASP_VERSION),
+        "regrasp down, then regrasp up    (with programs of one version)", error.rpc_code);
+  }
+}
+
 }  // namespace
 
+SocketPath ConnectPath(const std::string& flag) {
+  const char* named = std::getenv("REGRASP_SOCKET");
+  const bool decided = !flag.empty() || (named != nullptr && *named != '\0');
+  return ResolveSocketPath(flag, decided ? "" : ConfiguredSocket(), SocketUse::kConnect);
+}
+
 std::string ClientSocket(const std::string& flag) {
-  const SocketPath socket = ResolveSocketPath(flag, "", SocketUse::kConnect);
+  const SocketPath socket = ConnectPath(flag);
   // A path that was named is the user's choice; one that we found must be theirs.
   if (socket.source != "flag" && socket.source != "$REGRASP_SOCKET") {
     const std::string cause = DistrustedDirectory(socket.path);
@@ -49,7 +68,11 @@ Context::Context(const GlobalOptions& options)
     : options_(options), out_(FormatOf(options), WantsColor(options), HasUtf8()) {}
 
 Client& Context::client() {
-  if (!client_) client_ = std::make_unique<Client>(ClientSocket(options_.socket), timeout_s());
+  if (!client_) {
+    auto client = std::make_unique<Client>(ClientSocket(options_.socket), timeout_s());
+    CheckProtocol(*client);
+    client_ = std::move(client);
+  }
   return *client_;
 }
 

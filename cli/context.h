@@ -7,6 +7,7 @@
 #include "cli/errors.h"
 #include "cli/grammar.h"
 #include "cli/print.h"
+#include "core/protocol/socket_path.h"
 
 namespace regrasp::cli {
 
@@ -54,6 +55,8 @@ class Context {
   std::unique_ptr<Client> client_;
 };
 
+/// Where a client looks for the daemon, by the rule of core/protocol/socket_path.h.
+SocketPath ConnectPath(const std::string& flag);
 /// The socket a client connects to, by the rule of core/protocol/socket_path.h. Throws
 /// CliError(kPermission) when its directory is somebody else's.
 std::string ClientSocket(const std::string& flag);

@@ -134,10 +134,10 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
   return started;
 }
 
-void StopDaemon(const std::string& socket, double timeout_s) {
+bool StopDaemon(const std::string& socket, double timeout_s) {
   Client client(socket, timeout_s);
   const auto deadline = Deadline(timeout_s);
-  client.Call("shutdown", Json::object());
+  const Json answer = client.Call("shutdown", Json::object());
   // The daemon is gone when its end of this connection closes and nobody listens any more.
   try {
     while (client.NextEvent(std::chrono::duration<double>(deadline - Clock::now()).count())) {
@@ -145,6 +145,7 @@ void StopDaemon(const std::string& socket, double timeout_s) {
   } catch (const CliError& error) {
     if (error.code != kNoDaemon) throw;
   }
+  if (answer.value("activated", false)) return true;  // looking would start it again
   while (fs::exists(socket) && Listening(socket)) {
     if (Clock::now() > deadline) {
       throw CliError(kTimeout, fmt::format("{} is still there after {:g} s", socket, timeout_s),
@@ -152,6 +153,7 @@ void StopDaemon(const std::string& socket, double timeout_s) {
     }
     WaitFor(-1, 0, Deadline(0.01));
   }
+  return false;
 }
 
 }  // namespace regrasp::cli

@@ -22,7 +22,8 @@ struct StartedDaemon {
 StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
                           double timeout_s);
 
-/// Asks the daemon at `socket` to stop and waits until it is gone. Throws CliError.
-void StopDaemon(const std::string& socket, double timeout_s);
+/// Asks the daemon at `socket` to stop and waits until it is gone. Returns whether a service
+/// manager keeps the socket and will start another at the next connection. Throws CliError.
+bool StopDaemon(const std::string& socket, double timeout_s);
 
 }  // namespace regrasp::cli

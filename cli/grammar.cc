@@ -114,7 +114,7 @@ const std::vector<CommandSpec>& Commands() {
   static const std::vector<CommandSpec> kCommands = [] {
     std::vector<CommandSpec> all;
     for (auto* group : {RunCommands, ControlCommands, InspectCommands, ResultCommands,
-                        ExperimentCommands, ToolCommands}) {
+                        ExperimentCommands, ToolCommands, ConfigCommands}) {
       for (auto& command : group()) all.push_back(std::move(command));
     }
     return all;

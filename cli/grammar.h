@@ -81,6 +81,7 @@ std::vector<CommandSpec> InspectCommands();
 std::vector<CommandSpec> ResultCommands();
 std::vector<CommandSpec> ExperimentCommands();
 std::vector<CommandSpec> ToolCommands();
+std::vector<CommandSpec> ConfigCommands();
 
 /// Commands whose words begin with `words` ("noise" -> noise show, noise set …); exact match first.
 std::vector<const CommandSpec*> FindCommands(std::string_view words);

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "cli/errors.h"
-#include "cli/grammar.h"
+#include "cli/examples.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
@@ -33,19 +32,23 @@ std::string Wrap(const std::string& text, std::size_t indent) {
   return result + line + "\n";
 }
 
+std::string Examples(std::string_view words, const Output& out) {
+  std::string text;
+  for (const Example& example : ExamplesOf(words)) {
+    const bool fits = example.line.size() <= 36;
+    text += fits ? fmt::format("  {:<36} {}\n", example.line, example.meaning)
+                 : fmt::format("  {}\n{:>39}{}\n", example.line, "", example.meaning);
+  }
+  return text.empty() ? "" : out.Paint("Examples", Style::kBold) + "\n" + text + "\n";
+}
+
 std::string ArgLine(const Arg& arg) {
   std::string name = arg.flags.empty() ? arg.metavar : arg.flags;
   if (name.starts_with("--")) name = "    " + name;
   for (auto comma = name.find(','); comma != std::string::npos; comma = std::string::npos)
     name.replace(comma, 1, ", ");
   if (!arg.flags.empty() && !arg.metavar.empty()) name += " " + arg.metavar;
-  std::string text = arg.help;
-  if (!arg.values.empty()) text += fmt::format(": {}", fmt::join(arg.values, ", "));
-  if (arg.kind != ArgKind::kText && arg.kind != ArgKind::kFlag && arg.max < 1e299) {
-    text += fmt::format("; {:.6g} to {:.6g}", arg.min / arg.scale, arg.max / arg.scale);
-  }
-  if (!arg.default_text.empty()) text += fmt::format(" (default: {})", arg.default_text);
-  return Wrap(fmt::format("  {:<24} {}", name, text), 27);
+  return Wrap(fmt::format("  {:<24} {}", name, MeaningOf(arg)), 27);
 }
 
 std::string Usage(const CommandSpec& command) {
@@ -61,7 +64,8 @@ std::string Usage(const CommandSpec& command) {
 std::string CommandHelp(const CommandSpec& command, const Output& out) {
   std::string text =
       out.Paint(Usage(command), Style::kBold) + "\n" + Wrap("  " + command.sentence, 2);
-  if (!command.args.empty()) text += "\n";
+  text += "\n" + Examples(command.words, out);
+  if (!command.args.empty()) text += out.Paint("Arguments", Style::kBold) + "\n";
   for (const auto& arg : command.args) text += ArgLine(arg);
   if (command.method != nullptr && !command.method->result.empty()) {
     text += "\n" + Wrap(fmt::format("  Asks the daemon '{}'; with --json prints its answer: {}",
@@ -73,7 +77,9 @@ std::string CommandHelp(const CommandSpec& command, const Output& out) {
 
 std::string Overview(const Output& out) {
   std::string text = out.Paint("regrasp", Style::kBold) +
-                     " [OPTION]... COMMAND    hold, explore and turn an object in a hand\n";
+                     " [OPTION]... COMMAND    hold, explore and turn an object in a hand\n\n" +
+                     Examples("", out);
+  text.pop_back();
   std::string group;
   for (const auto& command : Commands()) {
     if (command.group != group) {
@@ -91,49 +97,7 @@ std::string Overview(const Output& out) {
   text += "\n" + out.Paint("Exit codes", Style::kBold) + "\n";
   for (const auto& exit : ExitTable())
     text += fmt::format("  {:>3}  {}\n", static_cast<int>(exit.code), exit.sentence);
-  return text + "\nBegin with: regrasp up; regrasp grasp --wait; regrasp explore ring --wait\n";
-}
-
-/// The words that may follow `words`, and the options there.
-std::string Followers(const std::string& words) {
-  std::set<std::string> next;
-  for (const auto* command : FindCommands(words)) {
-    if (command->words == words) {
-      for (const auto& arg : command->args) {
-        if (arg.flags.empty()) next.insert(arg.values.begin(), arg.values.end());
-        for (std::size_t begin = 0; begin < arg.flags.size();) {
-          const auto comma = std::min(arg.flags.find(',', begin), arg.flags.size());
-          next.insert(arg.flags.substr(begin, comma - begin));
-          begin = comma + 1;
-        }
-      }
-      return fmt::format("{}", fmt::join(next, " "));
-    }
-    const std::string rest = command->words.substr(words.empty() ? 0 : words.size() + 1);
-    next.insert(rest.substr(0, rest.find(' ')));
-  }
-  return fmt::format("{}", fmt::join(next, " "));
-}
-
-/// Every path of words, with what may follow it, as the cases of a shell's `case`.
-std::string Cases(const char* pattern) {
-  std::set<std::string> paths = {""};
-  for (const auto& command : Commands()) {
-    for (auto end = command.words.find(' '); end != std::string::npos;
-         end = command.words.find(' ', end + 1)) {
-      paths.insert(command.words.substr(0, end));
-    }
-    paths.insert(command.words);
-  }
-  std::string text;
-  for (const auto& path : paths) text += fmt::format(fmt::runtime(pattern), path, Followers(path));
-  return text;
-}
-
-std::string GlobalWords() {
-  std::string words;
-  for (const auto& arg : GlobalArgs()) words += " " + arg.flags.substr(arg.flags.find("--"));
-  return words;
+  return text + "\nregrasp help COMMAND tells more, man regrasp everything.\n";
 }
 
 }  // namespace
@@ -152,37 +116,25 @@ std::string HelpText(const std::string& words, const Output& out) {
   std::string text;
   for (const auto* command : found)
     text += Usage(*command) + "\n" + Wrap("  " + command->sentence, 2);
+  text += "\n";
+  for (const auto* command : found) {
+    std::string examples = Examples(command->words, out);
+    if (command != found.front()) examples.erase(0, examples.find('\n') + 1);
+    if (!examples.empty()) text += examples.substr(0, examples.size() - 1);
+  }
   return text;
 }
 
-std::string CompletionScript(const std::string& shell) {
-  if (shell == "fish") {
-    return "function __regrasp_words\n"
-           "  set -l path (string match -rv '^-' -- (commandline -opc)[2..])\n"
-           "  switch \"$path\"\n" +
-           Cases("    case '{}'\n      string split ' ' -- '{}'\n") +
-           "  end\nend\n"
-           "complete -c regrasp -f -a '(__regrasp_words)'\n";
+std::string MeaningOf(const Arg& arg) {
+  std::string text = arg.help;
+  if (!arg.values.empty()) text += fmt::format(": {}", fmt::join(arg.values, ", "));
+  if (arg.kind != ArgKind::kText && arg.kind != ArgKind::kFlag && arg.max < 1e299) {
+    const std::string most =
+        arg.max == kMaxSafeInteger ? "2^53" : fmt::format("{:.6g}", arg.max / arg.scale);
+    text += fmt::format("; {:.6g} to {}", arg.min / arg.scale, most);
   }
-  // zsh reads the bash script through its own compatibility layer.
-  return std::string(shell == "zsh"
-                         ? "#compdef regrasp\nautoload -U +X bashcompinit && bashcompinit\n"
-                         : "") +
-         "_regrasp() {\n"
-         "  local path='' word i\n"
-         "  for ((i = 1; i < COMP_CWORD; i++)); do\n"
-         "    word=${COMP_WORDS[i]}\n"
-         "    [[ $word == -* ]] || path=\"$path${path:+ }$word\"\n"
-         "  done\n"
-         "  case \"$path\" in\n" +
-         Cases("    '{}') word='{}' ;;\n") +
-         "    *) COMPREPLY=($(compgen -f -- \"${COMP_WORDS[COMP_CWORD]}\")); return ;;\n"
-         "  esac\n"
-         "  COMPREPLY=($(compgen -W \"$word" +
-         GlobalWords() +
-         "\" -- \"${COMP_WORDS[COMP_CWORD]}\"))\n"
-         "}\n"
-         "complete -F _regrasp regrasp\n";
+  if (!arg.default_text.empty()) text += fmt::format(" (default: {})", arg.default_text);
+  return text;
 }
 
 }  // namespace regrasp::cli

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "cli/grammar.h"
 #include "cli/print.h"
 
 namespace regrasp::cli {
@@ -11,6 +12,9 @@ namespace regrasp::cli {
 /// The list of commands for empty `words`, help on one command, or on a family ("noise"). Throws
 /// CliError(kUsage) for unknown words.
 std::string HelpText(const std::string& words, const Output& out);
+
+/// What an argument is for, its values, range and default, in one line.
+std::string MeaningOf(const Arg& arg);
 
 /// A completion script for bash, zsh or fish.
 std::string CompletionScript(const std::string& shell);

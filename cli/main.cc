@@ -1,7 +1,10 @@
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
+#include "cli/complete.h"
 #include "cli/context.h"
 
 namespace {
@@ -15,6 +18,10 @@ int Run(int argc, char** argv) {
     return static_cast<int>(error.code);
   };
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "__complete") {
+      std::fputs(CompletionLines({argv + 2, argv + argc}).c_str(), stdout);
+      return 0;
+    }
     GlobalOptions options;
     const Invocation invocation = Parse(argc, argv, &options);
     Context context(options);

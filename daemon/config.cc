@@ -5,96 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdlib>
-#include <functional>
 
 #include "core/common/nearest_name.h"
-#include "core/protocol/methods.h"
-#include "core/sensing/noise.h"
-#include "daemon/pacing.h"
+#include "core/protocol/config_path.h"
+#include "daemon/json.h"
 
 namespace regrasp {
 namespace {
-
-/// One key of the file. `read` returns what is allowed when the value's type is wrong, else "".
-struct Key {
-  std::string_view name;
-  std::string_view sentence;
-  std::string (*read)(const toml::node&, DaemonConfig&);
-  std::string (*shown)(const DaemonConfig&);
-};
-
-std::string Quoted(const std::string& text) { return fmt::format("\"{}\"", text); }
-
-template <std::string DaemonConfig::*Member>
-std::string ReadText(const toml::node& node, DaemonConfig& config) {
-  const auto value = node.value_exact<std::string>();
-  if (!value) return "a string";
-  config.*Member = *value;
-  return {};
-}
-
-template <std::string DaemonConfig::*Member>
-std::string ShowText(const DaemonConfig& config) {
-  return Quoted(config.*Member);
-}
-
-template <std::string DaemonConfig::*Member>
-constexpr Key TextKey(std::string_view name, std::string_view sentence) {
-  return {name, sentence, ReadText<Member>, ShowText<Member>};
-}
-
-using C = DaemonConfig;
-
-const std::array kKeys = {
-    TextKey<&C::socket>("socket", "where to listen; empty: $XDG_RUNTIME_DIR, /run or /tmp"),
-    TextKey<&C::output_dir>("output_dir", "where pictures go; empty: ~/.local/state/regrasp"),
-    Key{"seed", "seed of the first run",
-        [](const toml::node& node, C& config) -> std::string {
-          const auto value = node.value_exact<std::int64_t>();
-          if (!value || *value < 0 || static_cast<double>(*value) > kMaxSafeInteger)
-            return "an integer, 0 ... 2^53";
-          config.seed = static_cast<std::uint64_t>(*value);
-          return {};
-        },
-        [](const C& config) { return std::to_string(config.seed); }},
-    TextKey<&C::hand>("hand", "name of the hand, or a .urdf file"),
-    TextKey<&C::object>("object", "name of the object, or a .urdf file; empty: the scenario's"),
-    TextKey<&C::models_dir>("models_dir", "searched for models before the usual places"),
-    Key{"speed", "times real time, or \"max\"",
-        [](const toml::node& node, C& config) -> std::string {
-          if (const auto text = node.value_exact<std::string>())
-            config.speed = *text;
-          else if (const auto number = node.value<double>())
-            config.speed = fmt::format("{}", *number);
-          else
-            return "a number, or \"max\"";
-          return {};
-        },
-        [](const C& config) { return config.speed; }},
-    Key{"paused", "begin with the clock stopped",
-        [](const toml::node& node, C& config) -> std::string {
-          const auto value = node.value_exact<bool>();
-          if (!value) return "true or false";
-          config.paused = *value;
-          return {};
-        },
-        [](const C& config) -> std::string { return config.paused ? "true" : "false"; }},
-    TextKey<&C::noise>("noise", "preset of sensor noise: off, fine, paper, coarse, taxel"),
-    Key{"max_clients", "connections at the same time",
-        [](const toml::node& node, C& config) -> std::string {
-          const auto value = node.value_exact<std::int64_t>();
-          if (!value || *value < 1 || *value > 1000) return "an integer, 1 ... 1000";
-          config.max_clients = static_cast<int>(*value);
-          return {};
-        },
-        [](const C& config) { return std::to_string(config.max_clients); }},
-    TextKey<&C::log_level>("log_level", "trace, debug, info, warn, error or off"),
-    TextKey<&C::log_format>("log_format", "text or json"),
-    TextKey<&C::stepper>("stepper", "fast, or exact: the slow reference"),
-};
 
 std::string DidYouMean(std::string_view wanted, const std::vector<std::string_view>& names) {
   const std::string_view near = NearestName(wanted, names);
@@ -105,8 +23,11 @@ struct Reader {
   const std::string& path;
   DaemonConfig* config;
 
+  std::string Place(const toml::node& node) const {
+    return fmt::format("{}:{}", path, node.source().begin.line);
+  }
   [[noreturn]] void Fail(const toml::node& node, const std::string& message) const {
-    throw ConfigError(fmt::format("{}:{}: {}", path, node.source().begin.line, message));
+    throw ConfigError(fmt::format("{}: {}", Place(node), message));
   }
 
   void ReadParameter(const std::string& name, const toml::node& node) const {
@@ -136,6 +57,7 @@ struct Reader {
       for (int i = 0; i < 3; ++i) read((*items)[static_cast<std::size_t>(i)], i);
     }
     config->parameters.emplace_back(name, value);
+    config->origins["parameters." + name] = Place(node);
   }
 
   /// [parameters] may be written with quoted names, dotted keys or sub-tables.
@@ -149,66 +71,61 @@ struct Reader {
     }
   }
 
+  void ReadKey(const ConfigKey& key, const toml::node& node) const {
+    const auto wrong = [&](const char* expected) {
+      Fail(node, fmt::format("{}: expected {}", key.name, expected));
+    };
+    std::string text;
+    if (key.kind == KeyKind::kInteger) {
+      if (!node.is_integer()) wrong("an integer");
+      text = std::to_string(*node.value<std::int64_t>());
+    } else if (key.kind == KeyKind::kBool) {
+      if (!node.is_boolean()) wrong("true or false");
+      text = *node.value<bool>() ? "true" : "false";
+    } else if (key.kind == KeyKind::kSpeed && node.is_number()) {
+      text = fmt::format("{}", *node.value<double>());
+    } else {
+      if (!node.is_string())
+        wrong(key.kind == KeyKind::kSpeed ? "a number, or \"max\"" : "a string");
+      text = *node.value<std::string>();
+    }
+    SetKey(config, key, text, Place(node));
+  }
+
   void Read(const toml::table& root) const {
-    for (const auto& [key, node] : root) {
-      if (key.str() == "parameters") {
+    for (const auto& [name, node] : root) {
+      if (name.str() == "parameters") {
         const toml::table* table = node.as_table();
         if (!table) Fail(node, "parameters is a table");
         ReadParameters(*table, "");
         continue;
       }
-      const auto it = std::ranges::find(kKeys, key.str(), &Key::name);
-      if (it == kKeys.end()) {
+      const auto key = std::ranges::find(ConfigKeys(), name.str(), &ConfigKey::name);
+      if (key == ConfigKeys().end()) {
         std::vector<std::string_view> names = {"parameters"};
-        for (const Key& known : kKeys) names.push_back(known.name);
-        Fail(node, fmt::format("unknown key '{}'{}", key.str(), DidYouMean(key.str(), names)));
+        for (const ConfigKey& known : ConfigKeys()) names.push_back(known.name);
+        Fail(node, fmt::format("unknown key '{}'{}", name.str(), DidYouMean(name.str(), names)));
       }
-      if (const std::string expected = it->read(node, *config); !expected.empty())
-        Fail(node, fmt::format("{}: expected {}", key.str(), expected));
-      try {
-        CheckConfig(*config, "");
-      } catch (const ConfigError& e) {
-        Fail(node, e.what());
-      }
+      ReadKey(*key, node);
     }
   }
 };
 
-void CheckWord(const std::string& where, std::string_view key, const std::string& value,
-               const std::vector<std::string_view>& allowed) {
-  if (std::ranges::find(allowed, value) != allowed.end()) return;
-  throw ConfigError(fmt::format("{}{} = \"{}\": expected {}{}", where, key, value,
-                                fmt::join(allowed, ", "), DidYouMean(value, allowed)));
+/// As TOML writes it; `value` points at `size` numbers.
+std::string Shown(const double* value, int size) {
+  return size == 1 ? fmt::format("{}", value[0])
+                   : fmt::format("[{}, {}, {}]", value[0], value[1], value[2]);
+}
+
+Json Value(const ConfigKey& key, const DaemonConfig& config) {
+  const std::string text = key.get(config);
+  if (key.kind == KeyKind::kInteger) return std::stoll(text);
+  if (key.kind == KeyKind::kBool) return text == "true";
+  if (key.kind == KeyKind::kSpeed && text != "max") return ParseSpeed(text);
+  return text;
 }
 
 }  // namespace
-
-double ParseSpeed(const std::string& text) {
-  if (text == "max") return kMaxSpeed;
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(value >= 1e-3 && value <= 1e3))
-    throw ConfigError(fmt::format("speed = \"{}\": expected 0.001 ... 1000, or max", text));
-  return value;
-}
-
-void CheckConfig(const DaemonConfig& config, const std::string& where) {
-  const auto presets = NoisePresetNames();
-  CheckWord(where, "noise", config.noise, {presets.begin(), presets.end()});
-  CheckWord(where, "log_level", config.log_level,
-            {"trace", "debug", "info", "warn", "error", "off"});
-  CheckWord(where, "log_format", config.log_format, {"text", "json"});
-  CheckWord(where, "stepper", config.stepper, {"fast", "exact"});
-  if (config.hand.empty()) throw ConfigError(where + "hand is empty");
-  if (config.max_clients < 1 || config.max_clients > 1000)
-    throw ConfigError(
-        fmt::format("{}max_clients = {}: expected 1 ... 1000", where, config.max_clients));
-  try {
-    ParseSpeed(config.speed);
-  } catch (const ConfigError& e) {
-    throw ConfigError(where + e.what());
-  }
-}
 
 void ReadConfigFile(const std::string& path, DaemonConfig* config) {
   if (::access(path.c_str(), R_OK) != 0) throw ConfigError(fmt::format("{}: cannot be read", path));
@@ -217,28 +134,84 @@ void ReadConfigFile(const std::string& path, DaemonConfig* config) {
   } catch (const toml::parse_error& e) {
     throw ConfigError(fmt::format("{}:{}: {}", path, e.source().begin.line, e.description()));
   }
+  config->file = path;
+}
+
+DaemonConfig ResolveConfig(const ConfigFlags& flags) {
+  DaemonConfig config;
+  const std::string file = flags.file.empty() ? UsualConfigFile() : flags.file;
+  if (!file.empty()) ReadConfigFile(file, &config);
+  for (const ConfigKey& key : ConfigKeys()) {
+    const std::string variable = VariableOf(key);
+    const char* text = std::getenv(variable.c_str());
+    if (text != nullptr && *text != '\0') SetKey(&config, key, text, "$" + variable);
+  }
+  for (const auto& [name, text] : flags.set) {
+    const ConfigKey& key = *std::ranges::find(ConfigKeys(), name, &ConfigKey::name);
+    SetKey(&config, key, text, FlagOf(key));
+  }
+  return config;
 }
 
 std::string DefaultConfigText() {
   const DaemonConfig config;
   std::string text = "# Configuration of regraspd: every key with its built-in value.\n\n";
-  for (const Key& key : kKeys)
-    text += fmt::format("{} = {}  # {}\n", key.name, key.shown(config), key.sentence);
+  for (const ConfigKey& key : ConfigKeys()) {
+    const std::string value = key.get(config);
+    text += fmt::format("{} = {}  # {}\n", key.name,
+                        key.kind == KeyKind::kText ? fmt::format("\"{}\"", value) : value,
+                        key.sentence);
+  }
   text +=
       "\n# Parameters of the simulation and the controller. Mass, friction and gravity come from "
       "the\n"
       "# models unless they are set here.\n[parameters]\n";
   Parameters parameters;
   for (const ParameterInfo& info : ParameterTable()) {
-    const double* value = info.access(parameters);
-    const std::string shown = info.size == 1
-                                  ? fmt::format("{}", value[0])
-                                  : fmt::format("[{}, {}, {}]", value[0], value[1], value[2]);
     const std::string unit = info.unit.empty() ? "" : fmt::format("[{}] ", info.unit);
-    text += fmt::format("# \"{}\" = {}  # {}{} {} ... {}\n", info.name, shown, unit,
-                        info.description, info.min, info.max);
+    text += fmt::format("# \"{}\" = {}  # {}{} {} ... {}\n", info.name,
+                        Shown(info.access(parameters), info.size), unit, info.description, info.min,
+                        info.max);
   }
   return text;
+}
+
+std::string ConfigJson(const DaemonConfig& config) {
+  const auto origin = [&](const std::string& name, const char* otherwise) -> std::string {
+    const auto it = config.origins.find(name);
+    return it == config.origins.end() ? otherwise : it->second;
+  };
+  Json keys = Json::array(), parameters = Json::array();
+  for (const ConfigKey& key : ConfigKeys())
+    keys.push_back({{"name", key.name},
+                    {"value", Value(key, config)},
+                    {"origin", origin(std::string(key.name), "built in")},
+                    {"variable", VariableOf(key)},
+                    {"flag", FlagOf(key)},
+                    {"reload", key.live},
+                    {"description", key.sentence}});
+  Parameters built_in;
+  for (const ParameterInfo& info : ParameterTable()) {
+    const double* value = info.access(built_in);
+    Vector3d shown(value[0], info.size == 3 ? value[1] : 0, info.size == 3 ? value[2] : 0);
+    for (const auto& [name, set] : config.parameters)
+      if (name == info.name) shown = set;
+    const std::string from = origin("parameters." + std::string(info.name), "");
+    const bool of_model = info.name == "gravity" || info.name.starts_with("object.");
+    Json json = info.size == 1 ? Json(shown.x()) : Json{shown.x(), shown.y(), shown.z()};
+    if (from.empty() && of_model) json = nullptr;
+    parameters.push_back({{"name", info.name},
+                          {"value", std::move(json)},
+                          {"origin", !from.empty() ? from
+                                     : of_model    ? "model"
+                                                   : "built in"},
+                          {"unit", info.unit},
+                          {"reload", true},
+                          {"description", info.description}});
+  }
+  const Json file = config.file.empty() ? Json() : Json(config.file);
+  return Json({{"file", file}, {"keys", std::move(keys)}, {"parameters", std::move(parameters)}})
+      .dump();
 }
 
 std::string DefaultOutputDir() {

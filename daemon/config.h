@@ -4,8 +4,12 @@
 /// flags; the later wins.
 
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,7 +40,43 @@ struct DaemonConfig {
   std::string stepper = "fast";     ///< fast or exact
   /// Values for the parameter table, in the order they were set.
   std::vector<std::pair<std::string, Vector3d>> parameters;
+  /// Where the values that are not built in come from: "FILE:LINE", "$REGRASP_SEED", "--seed"; by
+  /// key, or "parameters.NAME".
+  std::map<std::string, std::string> origins;
+  std::string file;  ///< the configuration file that was read; "": none
 };
+
+enum class KeyKind : std::uint8_t { kText, kInteger, kBool, kSpeed };
+
+/// One key: `max_clients` in the file, $REGRASP_MAX_CLIENTS, --max-clients.
+struct ConfigKey {
+  std::string_view name;
+  std::string_view metavar;   ///< "N"; "" for kBool
+  std::string_view sentence;  ///< what it means
+  KeyKind kind;
+  std::string (*get)(const DaemonConfig&);
+  void (*set)(DaemonConfig&, const std::string&);
+  bool live = false;        ///< a reload changes it; otherwise it needs a restart
+  double min = 0, max = 0;  ///< kInteger, inclusive
+};
+
+/// Every key, in the order they are printed.
+std::span<const ConfigKey> ConfigKeys();
+std::string FlagOf(const ConfigKey& key);      ///< "--max-clients"
+std::string VariableOf(const ConfigKey& key);  ///< "REGRASP_MAX_CLIENTS"
+
+/// Gives a key the value that `text` says. Throws ConfigError; `origin` names where it stands.
+void SetKey(DaemonConfig* config, const ConfigKey& key, const std::string& text,
+            const std::string& origin);
+
+/// What the command line asks for.
+struct ConfigFlags {
+  std::string file;                                      ///< --config; "": the usual places
+  std::vector<std::pair<std::string, std::string>> set;  ///< key name and text
+};
+
+/// File, environment and flags together. Throws ConfigError.
+DaemonConfig ResolveConfig(const ConfigFlags& flags);
 
 /// Reads a configuration file (TOML) over `config`. Throws ConfigError; unknown keys are errors.
 void ReadConfigFile(const std::string& path, DaemonConfig* config);
@@ -50,6 +90,10 @@ double ParseSpeed(const std::string& text);
 
 /// The text of a configuration file that holds every key with its built-in value.
 std::string DefaultConfigText();
+
+/// What is in force and where it comes from, as one JSON object: file, keys and parameters, each
+/// {name, value, origin, description, unit, reload}.
+std::string ConfigJson(const DaemonConfig& config);
 
 /// $XDG_STATE_HOME/regrasp, else $HOME/.local/state/regrasp, else /tmp/regrasp-$UID/output.
 std::string DefaultOutputDir();

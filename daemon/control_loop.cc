@@ -66,6 +66,7 @@ void ControlLoop::Run() {
     }
     const bool ticking = !faulted && (!paused_ || steps_left_ > 0);
     if (!ticking) {
+      if (!faulted) pulse_.fetch_add(1, std::memory_order_relaxed);
       CollectOutput();
       if (publish_due_) Publish();
       Acknowledge();
@@ -84,6 +85,7 @@ void ControlLoop::Run() {
         if (Pacing::Clock::now() < *due) continue;
       }
     }
+    if (!paused_) lateness_.Add(pacing_.Lateness(Pacing::Clock::now()));
     ApplyWaiting();
     TickOnce();
     Acknowledge();
@@ -193,6 +195,7 @@ void ControlLoop::Reset(const Command& command) {
 void ControlLoop::TickOnce() {
   session_->Tick();
   pacing_.Ticked();
+  pulse_.fetch_add(1, std::memory_order_relaxed);
   if (steps_left_ > 0) {
     --steps_left_;
     step_.progress = 1.0 - static_cast<double>(steps_left_) / static_cast<double>(steps_total_);

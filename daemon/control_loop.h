@@ -13,6 +13,7 @@
 #include "core/session/session.h"
 #include "daemon/pacing.h"
 #include "daemon/ring.h"
+#include "daemon/tick_times.h"
 #include "daemon/wake.h"
 
 namespace regrasp {
@@ -74,6 +75,13 @@ class ControlLoop {
   bool PopFrame(Published* frame) { return frames_.Pop(frame); }
   bool PopEvent(PublishedEvent* event) { return events_.Pop(event); }
   bool PopJob(JobRecord* job) { return jobs_.Pop(job); }
+  /// 99th percentile of how long after their due time the last ticks began [s]; 0 at full speed.
+  double lateness_p99() const { return lateness_.p99(); }
+  /// Grows with every tick, and while the clock is stopped on purpose with every Nudge(): a loop
+  /// that is stuck, or has faulted, does not move it.
+  std::uint64_t pulse() const { return pulse_.load(std::memory_order_relaxed); }
+  /// Any thread: makes a sleeping loop look around once.
+  void Nudge() { input_.Notify(); }
   /// Frames and events lost because the rings were full.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   /// Notified when a frame, an event, a job or an acknowledgement is there.
@@ -109,6 +117,7 @@ class ControlLoop {
   std::uint64_t taken_ = 0;             ///< number of the last request taken
   bool publish_due_ = true;             ///< something changed that the last frame does not show
   Published scratch_;
+  TickTimes lateness_;
 
   std::uint64_t posted_ = 0;  // I/O thread
   Ring<Waiting, 256> requests_;
@@ -117,6 +126,7 @@ class ControlLoop {
   Ring<JobRecord, 256> jobs_;
   std::atomic<std::uint64_t> acknowledged_{0};
   std::atomic<std::uint64_t> dropped_{0};
+  std::atomic<std::uint64_t> pulse_{0};
   std::atomic<std::size_t> waiting_{0};
   std::atomic<bool> stopping_{false};
   Wake input_, output_;

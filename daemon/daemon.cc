@@ -1,11 +1,15 @@
 #include "daemon/daemon.h"
 
+#include <spdlog/spdlog.h>
+
 #include <filesystem>
 
 #include "core/hand/scenario.h"
 #include "core/protocol/socket_path.h"
 #include "core/sensing/noise.h"
+#include "daemon/reload.h"
 #include "daemon/server.h"
+#include "daemon/service_manager.h"
 
 namespace regrasp {
 namespace {
@@ -37,10 +41,13 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
 
 }  // namespace
 
-Daemon::Daemon(const DaemonConfig& config, const Limits* limits) {
+Daemon::Daemon(const DaemonConfig& config, const Limits* limits) : config_(config) {
   ServiceConfig service = MakeServiceConfig(config);
-  listener_ =
-      std::make_unique<ListenSocket>(ResolveSocketPath(config.socket, "", SocketUse::kListen).path);
+  if (const int inherited = InheritedSocket(); inherited >= 0)
+    listener_ = std::make_unique<ListenSocket>(inherited);
+  else
+    listener_ = std::make_unique<ListenSocket>(
+        ResolveSocketPath(config.socket, "", SocketUse::kListen).path);
   Limits wanted;
   if (limits) wanted = *limits;
   wanted.max_clients = static_cast<std::size_t>(config.max_clients);
@@ -49,14 +56,48 @@ Daemon::Daemon(const DaemonConfig& config, const Limits* limits) {
 
 Daemon::~Daemon() = default;
 
-void Daemon::Run(bool signals) { server_->Run(signals); }
+void Daemon::Run(bool signals, const ConfigSource& source) {
+  server_->Run(signals, [this, &source] { Reload(source); });
+}
+
+void Daemon::Reload(const ConfigSource& source) {
+  if (!source) return;
+  DaemonConfig wanted;
+  try {
+    wanted = source();
+  } catch (const ConfigError& e) {
+    spdlog::error("reload: {}; nothing has changed", e.what());
+    return;
+  }
+  const ReloadPlan plan = PlanReload(config_, wanted);
+  for (const ReloadCall& call : plan.calls) {
+    const std::string refused = server_->Request(call.method, call.params);
+    if (refused.empty())
+      spdlog::info("reload: {}", call.what);
+    else
+      spdlog::warn("reload: {} refused: {}", call.what, refused);
+  }
+  spdlog::set_level(spdlog::level::from_str(wanted.log_level));
+  server_->SetMaxClients(static_cast<std::size_t>(wanted.max_clients));
+  for (const std::string& change : plan.at_once) spdlog::info("reload: {}", change);
+  for (const std::string& change : plan.restart) spdlog::warn("reload: {} needs a restart", change);
+  if (plan.calls.empty() && plan.at_once.empty() && plan.restart.empty())
+    spdlog::info("reload: nothing has changed");
+  // What needs a restart is said again at the next reload.
+  config_.noise = wanted.noise;
+  config_.parameters = wanted.parameters;
+  config_.log_level = wanted.log_level;
+  config_.max_clients = wanted.max_clients;
+}
 
 void Daemon::Stop() { server_->Stop(); }
 
 const std::string& Daemon::socket_path() const { return listener_->path(); }
 
-void CheckModels(const DaemonConfig& config) {
-  const Session session(MakeServiceConfig(config).control.session);
+SessionConfig MakeSessionConfig(const DaemonConfig& config) {
+  return MakeServiceConfig(config).control.session;
 }
+
+void CheckModels(const DaemonConfig& config) { const Session session(MakeSessionConfig(config)); }
 
 }  // namespace regrasp

@@ -2,6 +2,7 @@
 
 /// The whole daemon in one object, for main() and for tests in one process.
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,7 @@
 namespace regrasp {
 
 class ListenSocket;
+struct SessionConfig;
 class Server;
 struct Limits;
 
@@ -20,16 +22,27 @@ class Daemon {
   explicit Daemon(const DaemonConfig& config, const Limits* limits = nullptr);
   ~Daemon();
 
-  /// Serves until Stop(), a shutdown request or (with `signals`) SIGINT or SIGTERM.
-  void Run(bool signals);
+  /// Makes the configuration anew from file, environment and flags. Throws ConfigError.
+  using ConfigSource = std::function<DaemonConfig()>;
+
+  /// Serves until Stop(), a shutdown request or (with `signals`) SIGINT or SIGTERM. SIGHUP reloads
+  /// from `source`: what can change at once does, what needs a restart is said in the log, and a
+  /// configuration with an error changes nothing.
+  void Run(bool signals, const ConfigSource& source = {});
   /// Any thread.
   void Stop();
   const std::string& socket_path() const;
 
  private:
+  void Reload(const ConfigSource& source);
+
+  DaemonConfig config_;
   std::unique_ptr<ListenSocket> listener_;
   std::unique_ptr<Server> server_;
 };
+
+/// What the configuration makes of a session: models loaded, parameters set. Throws as Daemon does.
+SessionConfig MakeSessionConfig(const DaemonConfig& config);
 
 /// What `--check-config` checks: models load, and session and models fit. Throws as Daemon does.
 void CheckModels(const DaemonConfig& config);

@@ -28,6 +28,7 @@ Json StatusJson(Service& service) {
           {"dt_s", service.dt()},
           {"state_hash", HashText(frame.state_hash)},
           {"real_time_factor", service.real_time_factor()},
+          {"lateness_p99_s", service.control().lateness_p99()},
           {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
           {"seed", frame.seed},
           {"hand", service.hand().name},
@@ -134,7 +135,7 @@ Outcome VersionOf(Service&, const Params&, Client&) {
 
 Outcome Shutdown(Service& service, const Params&, Client&) {
   service.host().Shutdown();
-  return {.result = {{"stopping", true}}};
+  return {.result = {{"stopping", true}, {"activated", service.host().activated()}}};
 }
 
 Outcome Subscribe(Service&, const Params& params, Client& client) {

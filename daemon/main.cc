@@ -9,17 +9,15 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <optional>
 
 #include "core/common/nearest_name.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
-#include "core/protocol/methods.h"
+#include "daemon/bench.h"
 #include "daemon/config.h"
 #include "daemon/daemon.h"
 #include "daemon/json.h"
+#include "daemon/manual.h"
 #include "daemon/protocol_page.h"
 #include "daemon/service.h"
 #include "daemon/socket.h"
@@ -61,71 +59,66 @@ int Fail(const std::string& cause, const std::string& next, ExitCode code) {
   return static_cast<int>(code);
 }
 
-/// Values from the command line; empty: not given.
+/// Values from the command line.
 struct Flags {
   std::string config;
-  std::optional<std::string> socket, output_dir, hand, object, models_dir, speed, noise, log_level,
-      log_format, stepper;
-  std::optional<std::int64_t> seed;
-  std::optional<int> max_clients;
-  bool paused = false, check = false, print_default = false, print_protocol = false,
-       version = false;
+  std::vector<std::string> text;  ///< by index into ConfigKeys()
+  double bench_s = 0;
+  bool paused = false, check = false, print_default = false, print_config = false,
+       print_protocol = false, print_manual = false, print_protocol_manual = false, version = false;
 };
 
+constexpr const char* kDescription =
+    R"(The service of regrasp: simulates the hand, runs its controller, answers on a Unix socket.
+
+Examples:
+  regraspd                                     in real time, until Ctrl-C
+  regraspd --speed max --seed 7                as fast as it can
+  regraspd --print-default-config > hand.toml  every key with its built-in value
+  regraspd --config hand.toml --check-config   is the file right?
+
+A flag beats the environment ($REGRASP_SEED for --seed), which beats the file.)";
+
 void AddFlags(CLI::App& app, Flags& f) {
-  app.add_option("--config", f.config, "configuration file (TOML)")->type_name("FILE.toml");
-  app.add_option("--socket", f.socket, "where to listen [$REGRASP_SOCKET]")->type_name("PATH");
-  app.add_option("--output-dir", f.output_dir, "where pictures go [$REGRASP_OUTPUT_DIR]")
-      ->type_name("DIR");
-  app.add_option("--seed", f.seed, "seed of the first run (default 1)")->type_name("N");
-  app.add_option("--hand", f.hand, "the hand (default shadow)")->type_name("NAME|FILE.urdf");
-  app.add_option("--object", f.object, "the object (default: the scenario's)")
-      ->type_name("NAME|FILE.urdf");
-  app.add_option("--models-dir", f.models_dir, "searched first for models [$REGRASP_MODELS_DIR]")
-      ->type_name("DIR");
-  app.add_option("--speed", f.speed, "times real time (default 1.0), or max")->type_name("X|max");
-  app.add_flag("--paused", f.paused, "begin with the clock stopped");
-  app.add_option("--noise", f.noise, "sensor noise (default paper)")->type_name("PRESET");
-  app.add_option("--max-clients", f.max_clients, "connections at the same time (default 64)")
-      ->type_name("N");
-  app.add_option("--log-level", f.log_level, "trace, debug, info, warn, error, off")
-      ->type_name("LEVEL");
-  app.add_option("--log-format", f.log_format, "text or json, on stderr")->type_name("FORMAT");
-  app.add_option("--stepper", f.stepper, "fast (default), or exact: the slow reference")
-      ->type_name("NAME");
+  app.add_option("--config", f.config,
+                 "configuration file (TOML); else $REGRASP_CONFIG, "
+                 "~/.config/regrasp/regraspd.toml or /etc/regrasp/regraspd.toml")
+      ->type_name("FILE.toml");
+  f.text.resize(ConfigKeys().size());
+  const DaemonConfig built_in;
+  for (std::size_t i = 0; i < f.text.size(); ++i) {
+    const ConfigKey& key = ConfigKeys()[i];
+    const std::string value = key.get(built_in);
+    if (key.kind == KeyKind::kBool)
+      app.add_flag(FlagOf(key), f.paused, std::string(key.sentence));
+    else
+      app.add_option(FlagOf(key), f.text[i],
+                     value.empty() ? std::string(key.sentence)
+                                   : fmt::format("{} (default {})", key.sentence, value))
+          ->type_name(std::string(key.metavar));
+  }
   app.add_flag("--check-config", f.check, "check configuration and models, then exit");
   app.add_flag("--print-default-config", f.print_default, "print a configuration file, then exit");
+  app.add_flag("--print-config", f.print_config,
+               "print as JSON what is in force and where it comes from, then exit");
   app.add_flag("--print-protocol", f.print_protocol, "print the protocol page, then exit");
+  app.add_flag("--print-protocol-manual", f.print_protocol_manual,
+               "print the source of regrasp-protocol(7), then exit");
+  app.add_flag("--print-manual", f.print_manual, "print the source of regraspd(8), then exit");
+  app.add_option("--bench", f.bench_s,
+                 "measure ticks for so long in each state, print JSON, then exit")
+      ->type_name("S");
   app.add_flag("--version", f.version, "print the version, then exit");
 }
 
-/// Flag beats environment beats file.
-DaemonConfig Resolve(const Flags& f) {
-  DaemonConfig config;
-  if (!f.config.empty()) ReadConfigFile(f.config, &config);
-  const auto take = [](const std::optional<std::string>& flag, const char* variable,
-                       std::string* value) {
-    const char* set = variable ? std::getenv(variable) : nullptr;
-    if (set && *set) *value = set;
-    if (flag) *value = *flag;
-  };
-  take(f.socket, "REGRASP_SOCKET", &config.socket);
-  take(f.output_dir, "REGRASP_OUTPUT_DIR", &config.output_dir);
-  take(f.models_dir, "REGRASP_MODELS_DIR", &config.models_dir);
-  take(f.hand, nullptr, &config.hand);
-  take(f.object, nullptr, &config.object);
-  take(f.speed, nullptr, &config.speed);
-  take(f.noise, nullptr, &config.noise);
-  take(f.log_level, "REGRASP_LOG_LEVEL", &config.log_level);
-  take(f.log_format, nullptr, &config.log_format);
-  take(f.stepper, nullptr, &config.stepper);
-  if (f.seed && (*f.seed < 0 || static_cast<double>(*f.seed) > kMaxSafeInteger))
-    throw ConfigError(fmt::format("--seed {}: expected 0 ... 2^53", *f.seed));
-  if (f.seed) config.seed = static_cast<std::uint64_t>(*f.seed);
-  if (f.max_clients) config.max_clients = *f.max_clients;
-  if (f.paused) config.paused = true;
-  CheckConfig(config, "");
-  return config;
+ConfigFlags Given(const CLI::App& app, const Flags& f) {
+  ConfigFlags flags{f.config, {}};
+  for (std::size_t i = 0; i < f.text.size(); ++i) {
+    const ConfigKey& key = ConfigKeys()[i];
+    if (app.count(FlagOf(key)) > 0)
+      flags.set.emplace_back(key.name, key.kind == KeyKind::kBool ? "true" : f.text[i]);
+  }
+  return flags;
 }
 
 /// The first argument nobody wanted, and the flag it may have meant (the library names neither
@@ -142,20 +135,19 @@ std::string Unexpected(const CLI::App& app) {
                      near.empty() ? "" : fmt::format("; did you mean {}?", near));
 }
 
-int Serve(const DaemonConfig& config) {
+int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
   StartLog(config);
   std::signal(SIGPIPE, SIG_IGN);
   Daemon daemon(config);
-  spdlog::info("regraspd {} listens on {}", Version(), daemon.socket_path());
-  daemon.Run(true);
+  spdlog::info("regraspd {} listens on {}, configuration {}", Version(), daemon.socket_path(),
+               config.file.empty() ? "built in" : config.file);
+  daemon.Run(true, source);
   spdlog::info("stopped");
   return static_cast<int>(ExitCode::kOk);
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app(
-      "The service of regrasp: simulates the hand, runs its controller, answers on a Unix socket.",
-      "regraspd");
+  CLI::App app(kDescription, "regraspd");
   Flags flags;
   AddFlags(app, flags);
   try {
@@ -169,10 +161,15 @@ int Main(int argc, char** argv) {
   }
   if (flags.version) return fmt::print("regraspd {} (protocol {})\n", Version(), kWireVersion), 0;
   if (flags.print_default) return fmt::print("{}", DefaultConfigText()), 0;
+  if (flags.print_manual) return fmt::print("{}", DaemonManual()), 0;
+  if (flags.print_protocol_manual) return fmt::print("{}", ProtocolManual()), 0;
   if (flags.print_protocol) return fmt::print("{}", ProtocolPage()), 0;
   try {
-    const DaemonConfig config = Resolve(flags);
-    if (!flags.check) return Serve(config);
+    const auto source = [given = Given(app, flags)] { return ResolveConfig(given); };
+    const DaemonConfig config = source();
+    if (flags.print_config) return fmt::print("{}\n", ConfigJson(config)), 0;
+    if (flags.bench_s > 0) return fmt::print("{}\n", Benchmark(config, flags.bench_s)), 0;
+    if (!flags.check) return Serve(config, source);
     CheckModels(config);
     fmt::print("configuration ok\n");
     return 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -34,6 +35,12 @@ class Pacing {
       return {};
     }
     return due;
+  }
+  /// How long after its due time the next tick would begin now [s]; 0 without pacing.
+  double Lateness(Clock::time_point now) const {
+    if (period_ == 0) return 0;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    return std::max(0.0, elapsed - static_cast<double>(ticks_) * period_);
   }
   void Ticked() { ++ticks_; }
 

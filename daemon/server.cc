@@ -1,5 +1,6 @@
 #include "daemon/server.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -39,19 +40,16 @@ Server::~Server() {
   worker_.join();
 }
 
-void Server::Run(bool signals) {
+void Server::Run(bool signals, std::function<void()> reload) {
   if (signals) {
-    signals_.add(SIGINT);
-    signals_.add(SIGTERM);
-    signals_.async_wait([this](std::error_code error, int signal) {
-      if (error) return;
-      spdlog::info("signal {}: stopping", signal);
-      Shutdown();
-    });
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) signals_.add(signal);
+    WatchSignals(reload);
   }
   WatchControl();
   WatchHealth();
   Accept();
+  manager_.Tell("READY=1\nSTATUS=" + StatusLine());
+  FeedWatchdog();
   io_.run();
   // Connections hold their own sockets and timers alive through handlers: let go of all before io_
   // goes.
@@ -61,6 +59,60 @@ void Server::Run(bool signals) {
 
 void Server::Stop() {
   asio::post(io_, [this] { Shutdown(); });
+}
+
+void Server::WatchSignals(const std::function<void()>& reload) {
+  const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
+  signals_.async_wait([this, reload, on_terminal](std::error_code error, int signal) {
+    if (error) return;
+    const bool hung_up = on_terminal && ::isatty(STDERR_FILENO) == 0;
+    if (signal != SIGHUP || hung_up) {
+      spdlog::info("signal {}: stopping", signal);
+      return Shutdown();
+    }
+    manager_.Tell("RELOADING=1");
+    if (reload) reload();
+    manager_.Tell("READY=1");
+    WatchSignals(reload);
+  });
+}
+
+/// The watchdog is fed only when the control loop has moved since the last time: by a tick, or,
+/// while the clock is stopped on purpose, by looking around.
+void Server::FeedWatchdog() {
+  if (!manager_.watchdog()) return;
+  ControlLoop& control = service_.control();
+  if (const std::uint64_t pulse = control.pulse(); pulse != pulse_) {
+    pulse_ = pulse;
+    manager_.Tell("WATCHDOG=1\nSTATUS=" + StatusLine());
+  } else {
+    manager_.Tell("STATUS=the simulation does not advance: " + StatusLine());
+  }
+  control.Nudge();
+  watchdog_.expires_after(*manager_.watchdog() / 4);
+  watchdog_.async_wait([this](std::error_code error) {
+    if (!error && !stopping_) FeedWatchdog();
+  });
+}
+
+std::string Server::StatusLine() const {
+  const Published& newest = service_.newest();
+  return fmt::format("{}{}, tick {}, {:.2f} x real time", Name(newest.frame.state),
+                     newest.paused ? ", paused" : "", newest.frame.tick,
+                     service_.real_time_factor());
+}
+
+std::string Server::Request(const std::string& method, const JsonIn& params) {
+  struct Nobody final : Client {
+    std::int64_t Subscribe(const std::string&, double) override { return 0; }
+    Json Unsubscribe(std::int64_t) override { return {}; }
+  } nobody;
+  try {
+    service_.Call(method, params, &nobody);
+    return {};
+  } catch (const RpcException& e) {
+    return e.what();
+  }
 }
 
 void Server::Accept() {
@@ -179,6 +231,7 @@ bool Server::Background(std::function<void()> work, std::function<void()> finish
 void Server::Shutdown() {
   if (stopping_) return;
   stopping_ = true;
+  manager_.Tell("STOPPING=1");
   // After the handler that asked has sent its answer.
   asio::post(io_, [this] {
     std::error_code ignored;

@@ -9,12 +9,14 @@
 #include <asio/signal_set.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/thread_pool.hpp>
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "daemon/connection.h"
 #include "daemon/service.h"
+#include "daemon/service_manager.h"
 #include "daemon/socket.h"
 
 namespace regrasp {
@@ -26,10 +28,16 @@ class Server final : public ConnectionOwner, public Host {
   Server(ServiceConfig config, Limits limits, ListenSocket* listener);
   ~Server() override;
 
-  /// Serves until Stop(), a shutdown request or, with `signals`, SIGINT or SIGTERM.
-  void Run(bool signals);
+  /// Serves until Stop(), a shutdown request or, with `signals`, SIGINT or SIGTERM; SIGHUP calls
+  /// `reload`, unless it says that the terminal this was started from has gone.
+  void Run(bool signals, std::function<void()> reload = {});
   /// Any thread: closes the connections once they are flushed and ends Run().
   void Stop();
+
+  /// From `reload`: a request of our own, as a client would make it. Returns why it was refused, or
+  /// "".
+  std::string Request(const std::string& method, const JsonIn& params);
+  void SetMaxClients(std::size_t count) { limits_.max_clients = count; }
 
  private:
   // ConnectionOwner
@@ -43,11 +51,15 @@ class Server final : public ConnectionOwner, public Host {
   bool Background(std::function<void()> work, std::function<void()> finish) override;
   std::size_t clients() const override { return connections_.size(); }
   void Shutdown() override;
+  bool activated() const override { return listener_->inherited(); }
 
   void Accept();
   void Admit(Connection::Socket socket);
   void WatchControl();
   void WatchHealth();
+  void WatchSignals(const std::function<void()>& reload);
+  void FeedWatchdog();
+  std::string StatusLine() const;
   void Finish();
   std::vector<std::shared_ptr<Connection>> Connections() const;
 
@@ -56,7 +68,7 @@ class Server final : public ConnectionOwner, public Host {
   asio::io_context io_{1};
   asio::local::stream_protocol::acceptor acceptor_{io_};
   asio::posix::stream_descriptor control_output_{io_};
-  asio::steady_timer accept_retry_{io_}, health_{io_}, last_moment_{io_};
+  asio::steady_timer accept_retry_{io_}, health_{io_}, last_moment_{io_}, watchdog_{io_};
   asio::signal_set signals_{io_};
   std::map<Connection*, std::shared_ptr<Connection>> connections_;
   std::map<std::uint64_t, asio::steady_timer> timers_;
@@ -64,6 +76,8 @@ class Server final : public ConnectionOwner, public Host {
   std::size_t background_ = 0;
   bool stopping_ = false;
   std::uint64_t acknowledged_ = 0;
+  std::uint64_t pulse_ = 0;  ///< of the control loop, when the watchdog was last fed
+  ServiceManager manager_;
   Service service_;
   asio::thread_pool worker_{1};
 };

@@ -64,6 +64,8 @@ class Host {
   virtual bool Background(std::function<void()> work, std::function<void()> finish) = 0;
   virtual std::size_t clients() const = 0;
   virtual void Shutdown() = 0;
+  /// True when a service manager owns the socket, and starts a daemon at the next connection.
+  virtual bool activated() const = 0;
 };
 
 class Service {

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -61,10 +62,19 @@ ListenSocket::ListenSocket(const std::string& path) : path_(path) {
   }
 }
 
+ListenSocket::ListenSocket(int listening) : socket_(listening), inherited_(true) {
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size) != 0)
+    Fail("cannot look at the socket handed over", errno);
+  const std::size_t length = size - offsetof(sockaddr_un, sun_path);
+  path_.assign(address.sun_path, strnlen(address.sun_path, length));
+}
+
 ListenSocket::~ListenSocket() {
   Remove();
   if (socket_ >= 0) ::close(socket_);
-  ::close(lock_);
+  if (lock_ >= 0) ::close(lock_);
 }
 
 int ListenSocket::Release() { return std::exchange(socket_, -1); }

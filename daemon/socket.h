@@ -29,6 +29,9 @@ class ListenSocket {
   /// directory, another daemon, something at the path that is not a socket (left alone), a path of
   /// more than 107 bytes.
   explicit ListenSocket(const std::string& path);
+  /// Takes over a socket that listens already (socket activation). It has no lock, and its file
+  /// stays: both belong to whoever made it.
+  explicit ListenSocket(int listening);
   /// Remove().
   ~ListenSocket();
   ListenSocket(const ListenSocket&) = delete;
@@ -40,6 +43,8 @@ class ListenSocket {
   /// until destruction.
   void Remove();
   const std::string& path() const { return path_; }
+  /// True when it was taken over.
+  bool inherited() const { return inherited_; }
 
  private:
   void Lock();
@@ -49,7 +54,7 @@ class ListenSocket {
   std::string path_;
   int lock_ = -1;
   int socket_ = -1;
-  bool bound_ = false;
+  bool bound_ = false, inherited_ = false;
   unsigned long long device_ = 0, inode_ = 0;
 };
 

@@ -264,14 +264,15 @@ constexpr std::array kMethods = {
     MethodSpec{"contacts", "contacts", "what the controller senses at each fingertip", kNone, false,
                "tick, time_s, fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
                "force_command_W_n}}; p_WC_m and normal_W are null without contact"},
-    MethodSpec{"describe", "describe", "every method with its parameters, types, units and ranges",
-               kDescribe, false, "version, protocol, methods, errors"},
+    MethodSpec{"describe", "call describe",
+               "every method with its parameters, types, units and ranges", kDescribe, false,
+               "version, protocol, methods, errors"},
     MethodSpec{"events", "events", "the latest events", kEvents, false,
                "events: [{tick, t_s, kind, finger, text, ...}], oldest first; dropped"},
     MethodSpec{"explore", "explore", "improve the grasp by sliding one finger over the surface",
                kExplore, true, "job"},
     MethodSpec{"grasp", "grasp", "close the hand on the object and hold it", kNone, true, "job"},
-    MethodSpec{"hello", "hello", "agree on a protocol version (optional)", kHello, false,
+    MethodSpec{"hello", "call hello", "agree on a protocol version (optional)", kHello, false,
                "protocol, version, server"},
     MethodSpec{"job.cancel", "job cancel", "end a job", kJobId, false, "the record of the job"},
     MethodSpec{"job.get", "job show", "the record of a job", kJobId, false,
@@ -307,7 +308,9 @@ constexpr std::array kMethods = {
                "paused, tick"},
     MethodSpec{"rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
                "job"},
-    MethodSpec{"shutdown", "down", "stop the daemon cleanly", kNone, false, "stopping"},
+    MethodSpec{
+        "shutdown", "down", "stop the daemon cleanly", kNone, false,
+        "stopping, activated (true: the service manager starts another at the next connection)"},
     MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
                "version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, "
                "speed, seed, hand, object, job, noise, clients, ..."},
@@ -318,7 +321,7 @@ constexpr std::array kMethods = {
     MethodSpec{"truth", "truth", "what only the simulator knows", kNone, false,
                "tick, time_s, object {p_WO_m, q_WO_wxyz, v_m_s, w_rad_s, mass_kg, friction}, "
                "contacts [{link, finger, p_WC_m, normal_W, force_W_n, depth_m}], gravity_W_m_s2"},
-    MethodSpec{"unsubscribe", "unsubscribe", "end a subscription", kUnsubscribe, false,
+    MethodSpec{"unsubscribe", "call unsubscribe", "end a subscription", kUnsubscribe, false,
                "sub, seq, dropped"},
     MethodSpec{"version", "version", "version of the daemon", kNone, false, "version, protocol"},
 };

@@ -92,9 +92,17 @@ Verdict Session::Impl::MayExplore(int finger) {
   constexpr auto kRefused = Verdict::Kind::kBadState;
   if (finger < 0 || finger >= hand.num_fingers())
     return {kRefused, "no such finger", "regrasp contacts"};
-  if (estimator.estimate().fingers[finger].in_contact) return {};
-  std::snprintf(refusal_text, sizeof(refusal_text), "%s does not touch the object",
-                hand.fingers[finger].name.c_str());
+  const char* name = hand.fingers[finger].name.c_str();
+  const double margin = monitor.load_margin_without(finger);
+  if (!estimator.estimate().fingers[finger].in_contact) {
+    std::snprintf(refusal_text, sizeof(refusal_text), "%s does not touch the object", name);
+  } else if (margin < parameters.gait.margin_min) {
+    std::snprintf(refusal_text, sizeof(refusal_text),
+                  "%s may not leave: the load margin without it is %.2f N, below %.2f N", name,
+                  margin, parameters.gait.margin_min);
+  } else {
+    return {};
+  }
   return {kRefused, refusal_text, "regrasp quality"};
 }
 
@@ -119,7 +127,13 @@ Verdict Session::Impl::Apply(const Command& command) {
           refusal.kind != Verdict::Kind::kAllowed)
         return Refuse(command, refusal);
       StartJob(command, JobMethod::kExplore);
-      StartExploration(command);
+      job.explore.finger = command.finger;
+      job.explore.criterion = command.criterion;
+      job.explore.estimator = command.estimator;
+      job.explore.seed = command.seed;
+      exploration.Start(
+          {command.finger, command.criterion, command.estimator, command.seed, command.max_cycles});
+      Enter(SessionState::kExploring);
       break;
     case CommandType::kRotate:
       StartJob(command, JobMethod::kRotate);
@@ -185,7 +199,7 @@ void Session::Impl::StopJob() {
       break;
     case JobMethod::kExplore:
       job.explore.reason = ExploreReason::kCancelled;
-      gait.active() ? gait.Stop() : exploration.Stop();
+      exploration.Stop();
       break;
     case JobMethod::kRotate:
       gait.Stop();

@@ -85,7 +85,8 @@ class FakeDaemon:
 
     def __init__(self, path, answers):
         path.parent.mkdir(mode=0o700, exist_ok=True)
-        self.answers, self.requests = answers, []
+        self.answers = {"hello": lambda _: {"protocol": 1, "version": "9.9.9", "server": "fake"}, **answers}
+        self.requests = []  # without hello, which every command begins with
         self.connections = []
         self.listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self.listener.bind(str(path))
@@ -110,7 +111,8 @@ class FakeDaemon:
     def _answer(self, connection):
         for line in connection.makefile("rb"):
             request = json.loads(line)
-            self.requests.append((request["method"], request.get("params", {})))
+            if request["method"] != "hello":
+                self.requests.append((request["method"], request.get("params", {})))
             reply = {"jsonrpc": "2.0", "id": request["id"]}
             try:
                 result = self.answers[request["method"]](request.get("params", {}))
@@ -147,9 +149,10 @@ class Refusal(Exception):
 class Terminal:
     """A program whose stdout and stderr are a terminal; `text` collects what it writes."""
 
-    def __init__(self, words, env):
+    def __init__(self, words, env, cwd=None):
         self.master, slave = pty.openpty()
-        self.process = subprocess.Popen([str(w) for w in words], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave, env=env)
+        self.process = subprocess.Popen([str(w) for w in words], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave, env=env,
+                                        cwd=cwd)
         os.close(slave)
         self.text = ""
 

@@ -1,6 +1,7 @@
 """`regrasp` against a scripted daemon: sockets, errors, waiting, streams, interrupts."""
 
 import json
+import os
 import socket
 import subprocess
 import unittest
@@ -37,6 +38,59 @@ class Sockets(Case):
         cause, _ = self.refused(3, "status")
         self.assertIn("not a socket", cause)
         self.assertEqual(self.socket.read_text(), "precious")
+
+    def test_another_protocol(self):
+        def refuse(params):
+            self.assertEqual(params, {"protocol": [1, 1]})
+            raise Refusal(-32012, "this daemon speaks protocol 2, the client 1 to 1", "use programs of one version")
+        fake = FakeDaemon(self.socket, {"hello": refuse, "status": lambda _: STATUS, "shutdown": lambda _: b""})
+        self.addCleanup(fake.close)
+        cause, hint = self.refused(8, "status")
+        self.assertIn(f"{self.socket}: this daemon speaks protocol 2, the client 1 to 1", cause)
+        self.assertIn("regrasp down, then regrasp up", hint)
+        self.assertEqual(fake.requests, [])
+
+    def as_nobody(self, *words, env):
+        """Runs `regrasp` as a user without rights (the tests may run as root, for whom nothing is forbidden)."""
+        user = 65534 if os.geteuid() == 0 else None
+        return subprocess.run([str(REGRASP), *words], env=env, capture_output=True, text=True, timeout=HANG_S, check=False, user=user)
+
+    def test_no_right_to_connect(self):
+        fake = FakeDaemon(self.socket, {"status": lambda _: STATUS})
+        self.addCleanup(fake.close)
+        self.socket.chmod(0)
+        self.socket.parent.chmod(0o755)
+        self.dir.chmod(0o755)
+        done = self.as_nobody("-s", str(self.socket), "status", env=environment())
+        self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
+        self.assertIn(f"not allowed to open {self.socket}", done.stderr)
+        self.assertIn("the user who started the daemon", done.stderr)
+
+    def test_a_directory_of_another_user_is_not_trusted(self):
+        if os.geteuid() != 0:
+            self.skipTest("only root can give a directory away")
+        place = self.dir / "regrasp"
+        fake = FakeDaemon(place / "regrasp.sock", {"status": lambda _: STATUS})
+        self.addCleanup(fake.close)
+        os.chown(place, 12345, 12345)
+        done = subprocess.run([str(REGRASP), "status"], env=environment(XDG_RUNTIME_DIR=str(self.dir)), capture_output=True, text=True, timeout=HANG_S,
+                              check=False)
+        self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
+        self.assertIn(f"{place} belongs to user 12345", done.stderr)
+        self.assertIn("regrasp -s PATH", done.stderr)
+        self.assertEqual(fake.requests, [])
+
+    def test_every_trouble_with_the_socket_has_its_own_next_step(self):
+        self.socket.parent.mkdir()
+        said = {tuple(self.refused(3, "status"))}
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(str(self.socket))
+        said.add(tuple(self.refused(3, "status")))
+        self.socket.unlink()
+        self.socket.write_text("precious")
+        said.add(tuple(self.refused(3, "status")))
+        self.assertEqual(len({cause for cause, _ in said}), 3)
+        self.assertEqual(len({hint for _, hint in said}), 3)
 
     def test_too_long_a_path(self):
         self.socket = self.dir / ("x" * 200)
@@ -107,7 +161,7 @@ class Answers(FakeCase):
         self.assertEqual(self.expect(0, "-q", "status").stdout, "")
 
     def test_nonsense_is_a_protocol_error(self):
-        for answer in (b"HTTP/1.1 400 Bad Request\n", b"[1]\n", b'{"jsonrpc":"2.0","id":1}\n', b'{"jsonrpc":"2.0","id":1,"error":{"code":"x"}}\n'):
+        for answer in (b"HTTP/1.1 400 Bad Request\n", b"[1]\n", b'{"jsonrpc":"2.0","id":2}\n', b'{"jsonrpc":"2.0","id":2,"error":{"code":"x"}}\n'):
             with self.subTest(answer):
                 self.forget_socket()
                 self.fake(status=lambda _, text=answer: text)

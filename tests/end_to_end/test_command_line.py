@@ -75,15 +75,6 @@ class Words(Case):
             for line in text.splitlines() + overview.splitlines():
                 self.assertLessEqual(len(line), 80, line)
 
-    def test_completion_scripts_name_the_commands(self):
-        for shell in ("bash", "zsh", "fish"):
-            script = self.expect(0, "completion", shell).stdout
-            for word in ("explore", "noise set", "--criterion", "taxel"):
-                self.assertIn(word, script)
-        ask = 'COMP_WORDS=(regrasp noise preset t); COMP_CWORD=3; _regrasp; echo "${COMPREPLY[@]}"'
-        done = subprocess.run(["bash", "-c", self.expect(0, "completion", "bash").stdout + ask], capture_output=True, text=True, env=environment(), check=True)
-        self.assertEqual(done.stdout.strip(), "taxel")
-
 
 class Start(Case):
     def test_version(self):

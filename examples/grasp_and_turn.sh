@@ -1,0 +1,24 @@
+#!/bin/sh
+# Grasps the object and turns it by 90 degrees, with nothing but a shell and nc (netcat-openbsd).
+#   regrasp up && sh grasp_and_turn.sh [SOCKET]
+set -eu
+socket=${1:-${REGRASP_SOCKET:-$XDG_RUNTIME_DIR/regrasp/regrasp.sock}}
+
+# ask METHOD [PARAMS]: one request, one line of answer. nc ends when the daemon has answered (-N).
+ask() {
+  printf '{"jsonrpc":"2.0","id":1,"method":"%s","params":%s}\n' "$1" "${2:-{\}}" | nc -U -N "$socket"
+}
+
+# wait_for ANSWER: the record of the job that ANSWER names, once it has ended.
+wait_for() {
+  job=$(printf '%s' "$1" | sed -n 's/.*"job":\([0-9]*\).*/\1/p')
+  if [ -z "$job" ]; then
+    echo "refused: $1" >&2
+    exit 5
+  fi
+  ask job.wait "{\"id\":$job}"
+}
+
+wait_for "$(ask grasp)"
+wait_for "$(ask rotate '{"angle_rad":1.5708}')"
+ask truth

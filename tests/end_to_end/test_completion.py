@@ -1,0 +1,83 @@
+"""Completion: what `regrasp __complete` offers, and the scripts in the shells they are for."""
+
+import subprocess
+import unittest
+
+from harness import Case, DaemonCase, FakeDaemon, HANG_S, REGRASP, environment
+
+
+def bash(words):
+    """What bash offers for the last of `words`."""
+    quoted = " ".join(f"'{word}'" for word in words)
+    return (f'eval "$(regrasp completion bash)"; COMP_WORDS=({quoted}); COMP_CWORD={len(words) - 1}; _regrasp; '
+            'printf "%s\\n" "${COMPREPLY[@]}"')
+
+
+def zsh(words):
+    """The same; `_describe` and `_files` of zsh's completion system need an editor, so they are replaced by ones that print."""
+    quoted = " ".join(f"'{word}'" for word in words)
+    return ("compdef() { : }; _files() { print :files }; "
+            "_describe() { local name=$3; print -l -- ${${(P)name}%%:*} }; "
+            f'eval "$(regrasp completion zsh)"; words=({quoted}); CURRENT={len(words)}; _regrasp')
+
+
+def fish(words):
+    return "regrasp completion fish | source; complete -C '" + " ".join(words) + "'"
+
+
+SHELLS = {"bash": bash, "zsh": zsh, "fish": fish}
+
+
+class Shells(Case):
+    def ask(self, shell, *words):
+        env = environment(PATH=f"{REGRASP.parent}:/usr/bin:/bin", REGRASP_SOCKET=str(self.socket), HOME=str(self.dir), ZDOTDIR=str(self.dir))
+        done = subprocess.run([shell, "-c", SHELLS[shell](["regrasp", *words])], capture_output=True, text=True, env=env, timeout=HANG_S, cwd=self.dir, check=False)
+        self.assertEqual(done.stderr, "", shell)
+        return [line.split("\t")[0] for line in done.stdout.splitlines() if line]
+
+    def test_the_three_shells_offer_the_same(self):
+        (self.dir / "grasp.json").write_text("{}")
+        for words, wanted in [(["noise", "preset", "t"], ["taxel"]), (["expl"], ["explore"]), (["noise", "s"], ["set", "show"]),
+                              (["explore", "ring", "--cr"], ["--criterion"]), (["explore", "ring", "--criterion", "s"], ["stability", "switched"]),
+                              (["--color", "al"], ["always"]), (["help", "job", "w"], ["wait"])]:
+            for shell in SHELLS:
+                with self.subTest(shell=shell, words=words):
+                    self.assertEqual(sorted(self.ask(shell, *words)), wanted)
+        for shell in SHELLS:
+            with self.subTest(shell):
+                self.assertIn(":files" if shell == "zsh" else "grasp.json", self.ask(shell, "evaluate", "gra"))
+
+
+class Names(DaemonCase):
+    def offered(self, *words):
+        return [line.split("\t")[0] for line in self.regrasp("__complete", *words, binary=REGRASP).stdout.splitlines()]
+
+    def regrasp(self, *words, **options):
+        if words[0] != "__complete":
+            return super().regrasp(*words, **options)
+        return subprocess.run([REGRASP, *words], env=environment(REGRASP_SOCKET=str(self.socket)), capture_output=True, text=True, timeout=HANG_S, check=True)
+
+    def test_the_daemon_knows_fingers_objects_and_parameters(self):
+        self.assertEqual(self.offered("explore", "t"), ["thumb"])
+        self.assertIn("egg", self.offered("reset", "--object", ""))
+        self.assertEqual(self.offered("param", "set", "object.f"), ["object.friction"])
+
+
+class Patience(Case):
+    def test_a_silent_daemon_is_not_waited_for(self):
+        # It never answers: without a limit this would last as long as the test may.
+        fake = FakeDaemon(self.socket, {"describe": lambda _: None, "hello": lambda _: None})
+        self.addCleanup(fake.close)
+        done = subprocess.run([REGRASP, "__complete", "explore", ""], env=environment(REGRASP_SOCKET=str(self.socket)), capture_output=True, text=True,
+                              timeout=HANG_S, check=True)
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+        self.assertIn(("describe", {"method": "explore"}), fake.requests)
+
+    def test_without_a_daemon_the_grammar_is_left(self):
+        done = subprocess.run([REGRASP, "__complete", "explore", "ring", "--estimator", ""], env=environment(REGRASP_SOCKET=str(self.socket)),
+                              capture_output=True, text=True, timeout=HANG_S, check=True)
+        self.assertEqual([line.split("\t")[0] for line in done.stdout.splitlines()], ["least_squares", "secant"])
+
+
+if __name__ == "__main__":
+    unittest.main()
