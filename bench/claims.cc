@@ -4,11 +4,11 @@
 //   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg
 //   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
 //   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all]
-//   [--speed DEG_S]
-//                   [--explore]
+//                    [--speed DEG_S] [--explore] [--push N]  a push of so much for 0.1 s a second
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
-// Common: --noise PRESET --object NAME --set NAME=VALUE (repeatable) --exact --rows (a line per
-// trial). Trials run in two processes (--jobs N); each is reproducible alone from its seed.
+// Common: --noise PRESET --object NAME --tilt DEG (of the palm) --set NAME=VALUE (repeatable)
+// --exact --rows (a line per trial). Trials run in two processes (--jobs N); each is reproducible
+// alone from its seed.
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "core/common/random.h"
 #include "core/hand/scenario.h"
 #include "core/session/session.h"
 
@@ -35,7 +36,7 @@ struct Options {
                     estimator = "least_squares", finger;
   int seeds = 5, jobs = 2, iterations = 0;
   std::uint64_t first = 1;
-  double seconds = 60, warm = -1, turns = 1, speed = 0;
+  double seconds = 60, warm = -1, turns = 1, speed = 0, tilt = -1, push = 0;
   std::string axis = "0,0,-1";
   bool exact = false, rows = false, exploring = false;
   std::vector<std::pair<std::string, double>> set;
@@ -52,6 +53,10 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
   if (o.iterations > 0) config.world.iterations = o.iterations;
   if (o.warm >= 0) config.world.contact_warm_start = o.warm;
   if (o.exact) config.world.stepper = Stepper::kExact;
+  if (o.tilt >= 0) {
+    const double t = o.tilt * M_PI / 180;
+    config.parameters.gravity_W = 9.81 * Vector3d(0, std::cos(t), std::sin(t));
+  }
   for (const auto& [name, value] : o.set) {
     const int index = FindParameter(name);
     if (index < 0) {
@@ -315,7 +320,15 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   std::vector<PhiChange> changes;
   const auto limit =
       session.tick() + static_cast<std::int64_t>(std::abs(o.turns) * 1000 * 1000) + 30000;
+  RandomStream pushes(seed, 3000);
   while (job.id == 0 && session.tick() < limit) {
+    if (o.push > 0 && session.tick() % 1000 == 0) {
+      Command push;
+      push.type = CommandType::kPush;
+      push.force_W = o.push * pushes.Normal3().normalized();
+      push.duration_s = 0.1;
+      session.Apply(push);
+    }
     session.Tick();
     touching += session.truth().link_link_contacts > 0;
     for (const Event& e : session.TakeEvents()) {
@@ -493,7 +506,11 @@ int main(int argc, char** argv) {
     else if (a == "--explore") {
       o.exploring = true;
       o.set.emplace_back("gait.mode", 0);
-    } else if (a == "--axis")
+    } else if (a == "--tilt")
+      o.tilt = std::stod(next());
+    else if (a == "--push")
+      o.push = std::stod(next());
+    else if (a == "--axis")
       o.axis = next();
     else if (a == "--speed")
       o.speed = std::stod(next());

@@ -78,9 +78,11 @@ void FingerGait::Enter(GaitPhase phase) {
 
 void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
                               const ControlParameters& control, const GaitParameters& parameters) {
-  if (ticks_ == 1)
-    search_.Start(home_stance_, fingers_, order_.empty() ? -1 : order_.back().finger,
-                  parameters.max_shift, request_.seed);
+  if (ticks_ == 1) {
+    const int opposing = order_.empty() ? -1 : order_.back().finger;
+    const int leaves = request_.make_room_for >= 0 ? request_.make_room_for : opposing;
+    search_.Start(home_stance_, fingers_, leaves, parameters.max_shift, request_.seed);
+  }
   if (ticks_ % kSearchTicks == 0)
     search_.Step(weight, control.friction_estimate, estimate.object_scale,
                  control.max_normal_force);
@@ -88,6 +90,7 @@ void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
   home_stance_ = search_.stance();
   for (std::size_t i = 0; i < home_stance_.size(); ++i) home_.p_OC[i] = home_stance_[i].p_OC;
   waiting_ = fingers_;
+  if (request_.make_room_for >= 0) waiting_ &= ~(1u << request_.make_room_for);
   Enter(GaitPhase::kChoose);
 }
 
@@ -122,7 +125,8 @@ void FingerGait::EndMotion() {
 }
 
 StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) const {
-  const double lead = parameters.lead * parameters.step_rad + lead_[finger];
+  const double lead =
+      request_.make_room_for >= 0 ? 0.0 : parameters.lead * parameters.step_rad + lead_[finger];
   const Quaterniond ahead = FromRotationVector(-sign_ * lead * request_.axis_W);
   const StanceContact& first = home_stance_[finger];
   return {ahead * first.p_OC, ahead * first.p_OF, ahead * first.normal_W};
@@ -148,7 +152,8 @@ bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench,
 
 void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
                       const ObjectWrench& wrench, const GaitParameters& parameters, double dt) {
-  const bool exploring = parameters.mode == static_cast<double>(GaitMode::kExploring);
+  const bool exploring =
+      parameters.mode == static_cast<double>(GaitMode::kExploring) && request_.make_room_for < 0;
   while (waiting_ != 0) {
     // The first of the table that waits, or the one farthest from its target.
     int pick = -1;
@@ -197,6 +202,10 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
 }
 
 void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameters) {
+  if (request_.make_room_for >= 0) {
+    Enter(GaitPhase::kFinish);
+    return;
+  }
   if (turned_before_ > 0) ++cycles_;
   idle_cycles_ = turned_in_cycle_ < kProgress ? idle_cycles_ + 1 : 0;
   if (idle_cycles_ <= kIdleCycles) {
@@ -338,6 +347,7 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   hasher->Add(stop_);
   hasher->Add(request_.angle_rad);
   hasher->Add(request_.axis_W);
+  hasher->Add(request_.make_room_for);
   hasher->Add(fingers_);
   hasher->Add(waiting_);
   hasher->Add(turned_before_);

@@ -33,6 +33,8 @@ class FingerGait {
     Vector3d axis_W = Vector3d::UnitZ();
     double speed_rad_s = 0;  ///< 0: the parameter's
     std::uint64_t seed = 0;
+    /// >= 0: no rotation; the others shift their contacts until this finger may leave (S_F).
+    int make_room_for = -1;
   };
   /// Load margins from sensed contacts [N].
   struct Margins {

@@ -50,6 +50,7 @@ struct GaitParameters {
   double disc_radius =
       0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
   double explore_s = 1.0;  ///< longest exploration per regrasp [s]
+  double estimator = 1;    ///< of its gradient: 1 least squares, 0 the printed rule (Estimator)
 };
 
 }  // namespace regrasp

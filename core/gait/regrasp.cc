@@ -105,7 +105,8 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
     const Vector3d error = TangentPart(target.p_WR - finger.p_WC, finger.normal_W);
     const double distance = error.norm();
     if (distance < kSlideArrived || ticks_ * dt > kRecallLimit_s) {
-      algorithm_.Start(input, Estimator::kLeastSquares, request_.seed, 0, exploration);
+      algorithm_.Start(input, static_cast<Estimator>(static_cast<int>(parameters.estimator)),
+                       request_.seed, 0, exploration);
       Enter(Phase::kExplore);
     } else {
       task->v_W = error * std::min(parameters.slide_gain, parameters.slide_speed / distance);

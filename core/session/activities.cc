@@ -58,7 +58,53 @@ void Session::Impl::AddReleasePull() {
   }
 }
 
+void Session::Impl::StartExploration(const Command& command) {
+  job.explore.finger = command.finger;
+  job.explore.criterion = command.criterion;
+  job.explore.estimator = command.estimator;
+  job.explore.seed = command.seed;
+  explore_request = {command.finger, command.criterion, command.estimator, command.seed,
+                     command.max_cycles};
+  Enter(SessionState::kExploring);
+  if (monitor.load_margin_without(command.finger) >= parameters.gait.margin_min) {
+    exploration.Start(explore_request);
+    return;
+  }
+  FingerGait::Request request;
+  request.seed = seed;
+  request.make_room_for = command.finger;
+  gait.Start(request, hand, estimator.estimate(), controller.wrench(), GraspFingers());
+}
+
+void Session::Impl::MakeRoom() {
+  gait.Update(hand, estimator.estimate(), Margins(), parameters.gravity_W, parameters.control,
+              parameters.exploration, parameters.gait, dt, &controller, &tasks);
+  ReportGait();
+  if (gait.active()) return;
+  const int finger = explore_request.finger;
+  const double margin = monitor.load_margin_without(finger);
+  if (gait.stopped()) {
+    FinishJob(JobState::kCancelled, "");
+  } else if (margin < parameters.gait.margin_min) {
+    char error[128];
+    std::snprintf(error, sizeof(error),
+                  "%s may not leave: the load margin without it is %.2f N, below %.2f N",
+                  hand.fingers[finger].name.c_str(), margin, parameters.gait.margin_min);
+    Emit(EventKind::kRefused, finger, margin, "%s may not leave: load margin %.3f N without it",
+         hand.fingers[finger].name.c_str(), margin);
+    FinishJob(JobState::kFailed, error);
+  } else {
+    exploration.Start(explore_request);
+    return;
+  }
+  Enter(SessionState::kHolding);
+}
+
 void Session::Impl::UpdateExploration() {
+  if (gait.active()) {
+    MakeRoom();
+    return;
+  }
   const bool was_on_stability = exploration.on_stability();
   exploration.Update(
       hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
@@ -111,6 +157,13 @@ void Session::Impl::UpdateExploration() {
   Enter(SessionState::kHolding);
 }
 
+FingerGait::Margins Session::Impl::Margins() const {
+  FingerGait::Margins margins;
+  margins.all = monitor.stability().load_margin;
+  for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
+  return margins;
+}
+
 void Session::Impl::StartRotation(const Command& command) {
   FingerGait::Request request;
   request.angle_rad = command.angle_rad;
@@ -125,11 +178,8 @@ void Session::Impl::StartRotation(const Command& command) {
 }
 
 void Session::Impl::UpdateRotation() {
-  FingerGait::Margins margins;
-  margins.all = monitor.stability().load_margin;
-  for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
   motion =
-      gait.Update(hand, estimator.estimate(), margins, parameters.gravity_W, parameters.control,
+      gait.Update(hand, estimator.estimate(), Margins(), parameters.gravity_W, parameters.control,
                   parameters.exploration, parameters.gait, dt, &controller, &tasks);
   JudgeRotation();
   ReportGait();

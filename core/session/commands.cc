@@ -92,17 +92,9 @@ Verdict Session::Impl::MayExplore(int finger) {
   constexpr auto kRefused = Verdict::Kind::kBadState;
   if (finger < 0 || finger >= hand.num_fingers())
     return {kRefused, "no such finger", "regrasp contacts"};
-  const char* name = hand.fingers[finger].name.c_str();
-  const double margin = monitor.load_margin_without(finger);
-  if (!estimator.estimate().fingers[finger].in_contact) {
-    std::snprintf(refusal_text, sizeof(refusal_text), "%s does not touch the object", name);
-  } else if (margin < parameters.gait.margin_min) {
-    std::snprintf(refusal_text, sizeof(refusal_text),
-                  "%s may not leave: the load margin without it is %.2f N, below %.2f N", name,
-                  margin, parameters.gait.margin_min);
-  } else {
-    return {};
-  }
+  if (estimator.estimate().fingers[finger].in_contact) return {};
+  std::snprintf(refusal_text, sizeof(refusal_text), "%s does not touch the object",
+                hand.fingers[finger].name.c_str());
   return {kRefused, refusal_text, "regrasp quality"};
 }
 
@@ -127,13 +119,7 @@ Verdict Session::Impl::Apply(const Command& command) {
           refusal.kind != Verdict::Kind::kAllowed)
         return Refuse(command, refusal);
       StartJob(command, JobMethod::kExplore);
-      job.explore.finger = command.finger;
-      job.explore.criterion = command.criterion;
-      job.explore.estimator = command.estimator;
-      job.explore.seed = command.seed;
-      exploration.Start(
-          {command.finger, command.criterion, command.estimator, command.seed, command.max_cycles});
-      Enter(SessionState::kExploring);
+      StartExploration(command);
       break;
     case CommandType::kRotate:
       StartJob(command, JobMethod::kRotate);
@@ -199,7 +185,7 @@ void Session::Impl::StopJob() {
       break;
     case JobMethod::kExplore:
       job.explore.reason = ExploreReason::kCancelled;
-      exploration.Stop();
+      gait.active() ? gait.Stop() : exploration.Stop();
       break;
     case JobMethod::kRotate:
       gait.Stop();

@@ -51,7 +51,7 @@ void Session::Impl::WatchDrop() {
   if (drop_ticks * dt < kDropContactTime_s && distance < parameters.control.drop_distance) return;
   if (state == SessionState::kExploring) {
     job.explore.reason = ExploreReason::kDropped;
-    JudgeExplorationEnd();
+    if (!gait.active()) JudgeExplorationEnd();
   }
   if (state == SessionState::kRotating) job.rotate.dropped = true;
   exploration = FingerExploration();

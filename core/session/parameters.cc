@@ -84,6 +84,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"gait.by_need", "", 0, 1, 1, "1: the finger farthest from its target regrasps first; 0: the order of the paper's table.", kOurs, [](P& p) { return &p.gait.by_need; }},
   {"gait.disc_radius", "m", 0, 0.02, 1, "Exploring: a contact stays within this distance of the finger's first one, in the palm.", kMeasured, [](P& p) { return &p.gait.disc_radius; }},
   {"gait.down_speed", "m/s", 0.002, 0.3, 1, "Hop: speed of the fingertip on its way down to the surface.", kMeasured, [](P& p) { return &p.gait.down_speed; }},
+  {"gait.estimator", "", 0, 1, 1, "Exploring: 1 estimates the gradient by least squares, 0 by the printed rule.", kPaper, [](P& p) { return &p.gait.estimator; }},
   {"gait.explore_s", "s", 0.05, 20, 1, "Exploring: longest run of Algorithm 1 per regrasp.", kOurs, [](P& p) { return &p.gait.explore_s; }},
   {"gait.hop", "", 0, 1, 1, "1: a finger hops to its target; 0: it slides.", kOurs, [](P& p) { return &p.gait.hop; }},
   {"gait.hop_force", "N", 0.01, 1, 1, "Hop: normal force at which the fingertip leaves the surface.", kMeasured, [](P& p) { return &p.gait.hop_force; }},

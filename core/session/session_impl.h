@@ -44,8 +44,7 @@ struct Session::Impl {
   void StartJob(const Command& command, JobMethod method);
   void FinishJob(JobState end, const char* error);
   Verdict Refuse(const Command& command, const Verdict& verdict);
-  /// A finger may leave the grasp only when it touches and the others keep a load margin without
-  /// it.
+  /// Whether there is such a finger and it touches.
   Verdict MayExplore(int finger);
   Verdict Apply(const Command& command);
   void SetParameter(const Command& command);
@@ -64,7 +63,12 @@ struct Session::Impl {
 
   // activities.cc: what the hand does, one Update a tick
   unsigned GraspFingers() const;
+  /// Algorithm 1; before it, where the load margin without the finger is too small, the other
+  /// fingers shift until it may leave.
+  void StartExploration(const Command& command);
+  void MakeRoom();
   void UpdateExploration();
+  FingerGait::Margins Margins() const;
   void StartRotation(const Command& command);
   void UpdateRotation();
   void UpdateGrasp();
@@ -103,6 +107,7 @@ struct Session::Impl {
   HybridController controller;
   GraspSequence grasp;
   FingerExploration exploration;
+  FingerExploration::Request explore_request;  // of the exploration that runs or waits for room
   FingerGait gait;
   ObjectMotion motion;
   RegraspRecord regrasp;  // the last one

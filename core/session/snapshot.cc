@@ -146,9 +146,11 @@ std::uint64_t Session::Impl::Hash() const {
   hasher.Add(release_tick);
   hasher.Add(drop_ticks);
   // Numbers that act later than the tick in which they were given.
-  hasher.Add(exploration.request().estimator);
-  hasher.Add(exploration.request().seed);
-  hasher.Add(exploration.request().max_cycles);
+  hasher.Add(explore_request.finger);
+  hasher.Add(explore_request.criterion);
+  hasher.Add(explore_request.estimator);
+  hasher.Add(explore_request.seed);
+  hasher.Add(explore_request.max_cycles);
   Parameters given = parameters;
   for (const ParameterInfo& info : ParameterTable())
     for (int k = 0; k < info.size; ++k) hasher.Add(info.access(given)[k]);

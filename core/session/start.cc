@@ -38,6 +38,7 @@ void Session::Impl::Build(std::uint64_t new_seed) {
   controller = HybridController(hand, dt);
   grasp = GraspSequence(hand, dt);
   exploration = FingerExploration();
+  explore_request = {};
   gait = FingerGait();
   regrasp = RegraspRecord();
   monitor = QualityMonitor();
