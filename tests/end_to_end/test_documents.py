@@ -21,6 +21,9 @@ INSTEAD = {
     "regraspd": ("regraspd --check-config", "without end; test_service runs it"),
     "regraspd --speed max --seed 7": ("regraspd --speed max --seed 7 --check-config", "without end"),
     "systemctl enable --now regraspd.socket": (None, "needs systemd; daemon/package/try_in_fresh_root.sh"),
+    "regrasp replay run-001.mcap": (None, "needs a run file: test_record"),
+    "regrasp export run-001.mcap --format csv -o run-001": (None, "needs a run file: test_record"),
+    "regrasp video run-001.mcap -o run-001.mp4": (None, "needs a run file: test_record"),
     "regrasp top": (None, "needs a terminal: test_top"),
     "regrasp shell": (None, "needs a terminal: test_shell"),
 }

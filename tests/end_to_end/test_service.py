@@ -1,5 +1,6 @@
 """`regraspd` as a service: configuration, reload, service manager, units."""
 
+import ctypes
 import json
 import os
 import re
@@ -184,6 +185,29 @@ class Notify(ServiceCase):
         self.assertIn("does not advance", next(message for message in looks if "WATCHDOG" not in message)["STATUS"])
         self.expect(0, "pause")
         self.manager.until(lambda message: "paused" in message["STATUS"] and "WATCHDOG" in message)
+
+    def test_a_loop_that_is_stuck_is_not_fed(self):
+        attach, detach, all_threads = 16, 17, 0x40000000  # PTRACE_ATTACH, PTRACE_DETACH, __WALL
+        self.start("--speed", "max", WATCHDOG_USEC="200000")
+        for _ in range(3):
+            self.manager.until(lambda message: "WATCHDOG" in message)
+        # The control loop is, at full speed, the thread that has worked most besides the main one.
+        tasks = f"/proc/{self.process.pid}/task"
+
+        def worked(task):
+            with open(f"{tasks}/{task}/stat", encoding="utf-8") as stat:
+                return int(stat.read().rsplit(")", 1)[1].split()[11])
+        loop = int(max((task for task in os.listdir(tasks) if int(task) != self.process.pid), key=worked))
+        libc = ctypes.CDLL(None, use_errno=True)
+        if libc.ptrace(attach, loop, 0, 0) != 0:
+            self.skipTest(f"one thread cannot be stopped here: ptrace: {os.strerror(ctypes.get_errno())}")
+        os.waitpid(loop, all_threads)
+        self.manager.until(lambda message: "WATCHDOG" not in message)
+        for _ in range(5):
+            self.assertIn("does not advance", self.manager.next()["STATUS"])
+        self.assertEqual(self.json("status")["state"], "idle")  # the other threads live: only the watchdog can tell
+        libc.ptrace(detach, loop, 0, 0)
+        self.manager.until(lambda message: "WATCHDOG" in message)
 
     def test_another_process_s_watchdog_is_not_ours(self):
         self.start("--speed", "max", WATCHDOG_USEC="200000", WATCHDOG_PID="1")
