@@ -29,7 +29,7 @@ INSTEAD = {
 }
 # Measurements: the same program, as short as it can be.
 SHORTER = [(r"--seconds [\d.]+", "--seconds 1"), (r"--seeds \d+", "--seeds 1"), (r"--turns \d+", "--turns 0.1"), (r"(--seeds|-n) \d+", r"\1 1"),
-           (r"bench_socket$", "bench_socket 20"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
+           (r"bench_socket$", "bench_socket 20"), (r"bench_watchers.*", "bench_watchers 1"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
 # Does what it says whatever comes of it: an exploration that ends at N_max, a turn that drops the object.
 MAY_FAIL = re.compile(r"regrasp (explore|rotate)|claims")
 
