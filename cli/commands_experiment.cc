@@ -56,9 +56,9 @@ ExitCode Merge(Context& context, const Invocation& invocation) {
                      fmt::format("{} holds another experiment than {}: {}", part.string(),
                                  parts.front().string(), difference),
                      "regrasp help experiment merge");
-    for (auto& [unit, rows] : ReadTrials(part)) {
-      const auto [place, fresh] = trials.emplace(unit, rows);
-      if (!fresh && place->second != rows)
+    for (const auto& [unit, result] : ReadTrials(part)) {
+      const auto [place, fresh] = trials.emplace(unit, result);
+      if (!fresh && !(place->second == result))
         throw CliError(
             kRefused,
             fmt::format("{} has another result for trial {} than the others", part.string(), unit),
@@ -72,8 +72,8 @@ ExitCode Merge(Context& context, const Invocation& invocation) {
                                whole.num_units()),
                    "give the directory of every shard, each run to its end");
   Store store(directory, whole);
-  for (const auto& [unit, rows] : trials)
-    if (!store.trials().contains(unit)) store.Add(unit, rows);
+  for (const auto& [unit, result] : trials)
+    if (!store.trials().contains(unit)) store.Add(unit, result);
   Print(context, WriteResults(whole, store.trials(), directory), directory);
   return kOk;
 }
@@ -165,8 +165,12 @@ std::vector<CommandSpec> ExperimentCommands() {
        {Number("seed", "--seed", ArgKind::kInteger, "N", "first seed", 0,
                kMaxSafeInteger - kMostSeeds, "1"),
         Number("seeds", "-n,--seeds", ArgKind::kInteger, "N",
-               "repetitions, and seeds a finger; a fifth of it for the sweep and the rotations", 1,
-               kMostSeeds, "50, as in the paper"),
+               "seeds of the explorations; the sweep and the rotations take a fifth of them", 1,
+               kMostSeeds, "50"),
+        Number("repeats", "--repeats", ArgKind::kInteger, "N",
+               "explorations of the ring finger with other start gradients", 0, 1000,
+               "50, as in the paper"),
+        Number("turns", "--turns", ArgKind::kNumber, "N", "of each rotation", 0.01, 1000, "1"),
         Text("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
         Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360,
                "12"),

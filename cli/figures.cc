@@ -16,8 +16,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::int64_t kExploreChunk = 100, kRotateChunk = 50;         // [ticks]
 constexpr std::int64_t kExploreLimit = 60000, kRotateLimit = 2000000;  // [ticks]
 constexpr int kHoldSamples = 50;
-constexpr std::int64_t kHoldChunk = 20;  // a second in all: sensor noise averages out
-constexpr double kTurns = 1;
+constexpr std::int64_t kHoldChunk = 20;           // a second in all: sensor noise averages out
 constexpr double kExploring = 0, kReturning = 1;  // values of gait.mode
 constexpr double kGaitWindow = 40;                // of figure 3b: its bands stay legible [s]
 const Json kAxis_W = {0, 0, -1};
@@ -177,7 +176,7 @@ void Figures::Rotation(double mode, const std::string& name) {
   GraspObject();
   daemon_.Call("param.set", {{"name", "gait.mode"}, {"value", mode}});
   GaitRecord gait;
-  const Json record = daemon_.Run("rotate", {{"turns", kTurns}, {"axis", kAxis_W}}, kRotateChunk,
+  const Json record = daemon_.Run("rotate", {{"turns", turns_}, {"axis", kAxis_W}}, kRotateChunk,
                                   kRotateLimit, [&] { gait.Look(&daemon_); });
   measured_["rotate"][name] = record;
   measured_["rotate"][name]["gait"] = gait.ToJson();
@@ -190,9 +189,9 @@ void Figures::Rotation(double mode, const std::string& name) {
     Add(claim, fmt::format("no drop, {} regrasps", Plain(At(record, "regrasps"))),
         JobExit(record) == kOk);
   Add("",
-      fmt::format("{:.0f} deg of {:.0f}, {:.0f} deg/min", degrees, 360 * kTurns,
+      fmt::format("{:.0f} deg of {:.0f}, {:.0f} deg/min", degrees, 360 * turns_,
                   seconds > 0 ? 60 * degrees / seconds : 0.0),
-      std::abs(degrees - 360 * kTurns) < kAngleTolerance);
+      std::abs(degrees - 360 * turns_) < kAngleTolerance);
   const double offset_mm = record.at("max_position_error_m").get<double>() * 1e3;
   Add("",
       fmt::format("within {:.1f} mm, axis within {} deg", offset_mm,

@@ -21,18 +21,23 @@ struct Claim {
 
 class Figures {
  public:
-  /// `daemon` writes into the directory `output`; `seed` is that of every run. Says on stderr what
-  /// it does.
-  Figures(Context& context, SteppedDaemon* daemon, std::filesystem::path output, std::int64_t seed)
-      : context_(context), daemon_(*daemon), output_(std::move(output)), seed_(seed) {}
+  /// `daemon` writes into the directory `output`; `seed` is that of every run; rotations
+  /// make `turns` turns. Says on stderr what it does.
+  Figures(Context& context, SteppedDaemon* daemon, std::filesystem::path output, std::int64_t seed,
+          double turns = 1)
+      : context_(context),
+        daemon_(*daemon),
+        output_(std::move(output)),
+        seed_(seed),
+        turns_(turns) {}
 
   /// Figure 1: the object in the hand. Throws CliError(kFailed) when it cannot be grasped.
   void Grasp();
   /// Each finger explores; figure 2; `repeats` explorations of the ring finger with other start
   /// gradients. Figure 2 and the repeats are left out for a hand without a ring finger.
   void Explorations(int repeats);
-  /// Figures 3a and 3b: one turn with fingers that return to their first contact, one with fingers
-  /// that explore.
+  /// Figures 3a and 3b: one rotation with fingers that return to their first contact, one with
+  /// fingers that explore.
   void Rotations();
 
   const std::vector<Claim>& claims() const { return claims_; }
@@ -66,6 +71,7 @@ class Figures {
   SteppedDaemon& daemon_;
   std::filesystem::path output_;
   std::int64_t seed_;
+  double turns_;
   std::vector<Claim> claims_;
   bool held_ = true;
   Json measured_ = Json::object();

@@ -40,6 +40,8 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   const std::int64_t seed = Integer(invocation, "seed", "1");
   const std::int64_t seeds = Integer(invocation, "seeds", "50");
   const std::int64_t few = std::max<std::int64_t>(1, seeds / kSweepShare);
+  const std::int64_t repeats = Integer(invocation, "repeats", "50");
+  const double turns = ParseNumber(invocation.Text("turns", "1"), "--turns");
   const int workers = Workers(invocation);
   std::error_code error;
   fs::create_directories(data, error);
@@ -71,7 +73,7 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   plan = common;
   plan.experiment = "rotation";
   plan.subjects = {"0,0,-1"};
-  plan.turns = 1;
+  plan.turns = turns;
   plan.seeds = few;
   plan.set = {{"gait.mode", "1"}};
   results.returning = Part(context, plan, workers, data / "returning",
@@ -80,17 +82,19 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   results.exploring = Part(context, plan, workers, data / "exploring",
                            fmt::format("rotations, exploring, {} seeds", few));
 
-  if (!context.options().quiet) fmt::print(stderr, "figures, {} repetitions\n", seeds);
+  if (!context.options().quiet) fmt::print(stderr, "figures, {} repetitions\n", repeats);
   std::vector<std::string> arguments = common.DaemonArguments();
   arguments.insert(arguments.end(), {"--output-dir", fs::absolute(data).string()});
   SteppedDaemon daemon(arguments);
-  Figures figures(context, &daemon, data, seed);
+  Figures figures(context, &daemon, data, seed, turns);
   figures.Grasp();
-  figures.Explorations(static_cast<int>(seeds));
+  figures.Explorations(static_cast<int>(repeats));
   figures.Rotations();
   results.figures = figures.measured();
   results.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
-  results.command = fmt::format("regrasp experiment paper --seed {} -n {} -o DIR", seed, seeds);
+  results.command =
+      fmt::format("regrasp experiment paper --seed {} -n {} --repeats {} --turns {} -o DIR", seed,
+                  seeds, repeats, turns);
   results.data = "reproduction";
   const fs::path page = output / "reproduction.md";
   WriteFile(page, ReproductionPage(results));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "cli/experiment/paper.h"
@@ -73,8 +74,17 @@ class Claims {
   explicit Claims(std::string command) : command_(std::move(command)) {}
   void Add(const std::string& claim, const std::string& measured, const std::string& verdict,
            const std::string& command = "") {
+    ++verdicts_[verdict];
     text_ += fmt::format("| {} | {} | {} | {} |\n", claim, measured,
                          command.empty() ? "(1)" : "`" + command + "`", verdict);
+  }
+  /// "12 yes, 2 partly, 1 no"
+  std::string Count() const {
+    std::string text;
+    for (const char* verdict : {"yes", "partly", "no"})
+      if (const auto n = verdicts_.find(verdict); n != verdicts_.end())
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n->second, verdict);
+    return text;
   }
   std::string Text() const {
     return "| the paper | measured here (95 % interval) | command | shown |\n|---|---|---|---|\n" +
@@ -83,6 +93,7 @@ class Claims {
 
  private:
   std::string command_, text_;
+  std::map<std::string, int> verdicts_;
 };
 
 std::string CommandOf(const Json& summary) {
@@ -148,8 +159,9 @@ void AddGait(const Json& measured, Claims* claims) {
       pattern, right && gait.at("objective").size() > 1 ? "yes" : "no");
   claims->Add(
       "“multiply readjusting the grasp configuration with all fingers in turn”",
-      fmt::format("{} fingers explored, {} regrasps in one turn", gait.at("objective").size(),
-                  Plain(measured["rotate"]["exploring"].at("regrasps"))),
+      fmt::format("{} fingers explored, {} regrasps in {} turn", gait.at("objective").size(),
+                  Plain(measured["rotate"]["exploring"].at("regrasps")),
+                  Fixed(measured["rotate"]["exploring"].at("turns"), 1)),
       gait.at("objective").size() == measured.at("hold").at("fingers") ? "yes" : "no");
   const Json &all = gait.at("stability_mean"), &without = gait.at("stability_without_next_mean");
   if (all.is_number() && without.is_number())
@@ -174,9 +186,10 @@ void AddRotation(const Json& summary, const std::string& claim, Claims* claims) 
   const Json& quantiles = group.at("quantiles");
   claims->Add(
       claim,
-      fmt::format("one turn completed {}, dropped {}; median {} °/min; object within {} mm, axis "
+      fmt::format("{} turn completed {}, dropped {}; median {} °/min; object within {} mm, axis "
                   "within {}°",
-                  Share(group, "completed"), Plain(group.at("counts").at("dropped").at("k")),
+                  summary.at("experiment").at("turns").get<double>(), Share(group, "completed"),
+                  Plain(group.at("counts").at("dropped").at("k")),
                   Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
                   Fixed(At(quantiles.at("max_position_error_m"), "max"), 1, 1e3),
                   Fixed(At(quantiles.at("max_tilt_rad"), "max"), 1, kDegrees)),
@@ -271,7 +284,7 @@ std::string ReproductionPage(const PaperResults& r) {
       "[paper map](paper_map.md).\n\n"
       "## Claims\n{}\n"
       "Shown: *yes*, the claim holds in every trial; *partly*, in at least {:.0f} %; *no*, in "
-      "fewer.\n\n"
+      "fewer. In all: {}.\n\n"
       "## Figures\n{}{}{}{}"
       "## Explorations, noise `paper`\n{}\n{}"
       "## Success against noise\nNoise-free φ at the end within 5 % of the best within "
@@ -279,7 +292,8 @@ std::string ReproductionPage(const PaperResults& r) {
       "Noise-free φ rose:\n\n{}\n{}"
       "## Deviations\nEvery one with its place in the source: [paper map](paper_map.md).\n{}",
       r.date, Plain(plan.at("version")), Plain(plan.at("build")), r.command, claims.Text(),
-      100 * kMostly, picture("figure1.png", "Figure 1: the scene; arrows are true contact forces"),
+      100 * kMostly, claims.Count(),
+      picture("figure1.png", "Figure 1: the scene; arrows are true contact forces"),
       picture("figure2.png", "Figure 2: the ring finger explores, two criteria"),
       picture("figure3a.png", "Figure 3a: contact points in the object's frame"),
       picture("figure3b.png", "Figure 3b: the gait, fingers exploring"),

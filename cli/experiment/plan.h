@@ -19,6 +19,13 @@ struct Unit {
   std::int64_t seed = 0;
 };
 
+/// What running a unit gave.
+struct UnitResult {
+  std::vector<Json> rows;  ///< members are the columns of trials.csv
+  Json map;                ///< explorations: PhiMap::samples; else null
+  bool operator==(const UnitResult&) const = default;
+};
+
 struct Plan {
   std::string experiment;                ///< "exploration", "noise-sweep", "rotation"
   std::string hand, object, models_dir;  ///< empty: the daemon's own

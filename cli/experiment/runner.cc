@@ -108,10 +108,10 @@ void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
           if (next == left.size() || failure) return;
           unit = left[next++];
         }
-        const auto rows = RunUnit(&daemon, plan, plan.unit(unit));
+        const UnitResult result = RunUnit(&daemon, plan, plan.unit(unit));
         const std::lock_guard lock(mutex);
-        store->Add(unit, rows);
-        progress.Finished(rows);
+        store->Add(unit, result);
+        progress.Finished(result.rows);
       }
     } catch (...) {
       const std::lock_guard lock(mutex);

@@ -43,6 +43,10 @@ std::string ReadFile(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+UnitResult ResultOf(const Json& line) {
+  return {line.at("rows").get<std::vector<Json>>(), At(line, "map")};
+}
+
 /// Ends a line that a crash cut off, so that the next one begins on its own.
 void EndLastLine(int fd, const fs::path& path) {
   const off_t size = ::lseek(fd, 0, SEEK_END);
@@ -66,8 +70,8 @@ Trials ReadTrials(const fs::path& directory) {
   std::ifstream file(directory / kTrialsFile);
   for (std::string line; std::getline(file, line);) {
     const Json json = Json::parse(line, nullptr, false);
-    if (!At(json, "unit").is_number_unsigned() || !At(json, "rows").is_array()) continue;
-    trials[json["unit"].get<std::size_t>()] = json["rows"].get<std::vector<Json>>();
+    if (At(json, "unit").is_number_unsigned() && At(json, "rows").is_array())
+      trials[json["unit"].get<std::size_t>()] = ResultOf(json);
   }
   return trials;
 }
@@ -129,11 +133,12 @@ Store::~Store() {
   ::close(lock_);
 }
 
-void Store::Add(std::size_t unit, const std::vector<Json>& rows) {
-  const Json line = {{"unit", unit}, {"rows", rows}};
-  WriteAll(file_, line.dump() + "\n", directory_ / kTrialsFile);
+void Store::Add(std::size_t unit, const UnitResult& result) {
+  const std::string line =
+      Json{{"unit", unit}, {"rows", result.rows}, {"map", result.map}}.dump() + "\n";
+  WriteAll(file_, line, directory_ / kTrialsFile);
   // As it will be read again, so that a run in one go and one in two give the same bytes.
-  trials_[unit] = Json::parse(line.dump()).at("rows").get<std::vector<Json>>();
+  trials_[unit] = ResultOf(Json::parse(line));
 }
 
 }  // namespace regrasp::cli

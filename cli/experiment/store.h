@@ -3,7 +3,7 @@
 /// An experiment's directory:
 ///   experiment.json  the plan
 ///   trials.jsonl     a line for each finished unit, in the order in which they finished
-///   trials.csv, summary.json, summary.png    made from these when all have finished
+///   trials.csv, maps.csv, summary.json, summary.png    made from these when all have finished
 /// A line is written at once when its unit has finished; a line cut off by a crash is ignored.
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace regrasp::cli {
 
-using Trials = std::map<std::size_t, std::vector<Json>>;  ///< rows by index of their unit
+using Trials = std::map<std::size_t, UnitResult>;  ///< by index of the unit
 
 class Store {
  public:
@@ -28,7 +28,7 @@ class Store {
   const std::filesystem::path& directory() const { return directory_; }
   const Trials& trials() const { return trials_; }
   /// Keeps a finished unit. Throws CliError(kIo).
-  void Add(std::size_t unit, const std::vector<Json>& rows);
+  void Add(std::size_t unit, const UnitResult& result);
 
  private:
   std::filesystem::path directory_;

@@ -83,8 +83,8 @@ Json Group(const Columns& columns, const std::vector<const Json*>& rows) {
 
 std::vector<const Json*> RowsWhere(const Trials& trials, const Json& wanted) {
   std::vector<const Json*> rows;
-  for (const auto& [unit, unit_rows] : trials)
-    for (const Json& row : unit_rows)
+  for (const auto& [unit, result] : trials)
+    for (const Json& row : result.rows)
       if (std::all_of(wanted.items().begin(), wanted.items().end(), [&](const auto& item) {
             return At(row, item.key().c_str()) == item.value();
           }))
@@ -128,8 +128,22 @@ std::string Share(const Json& count, int n) {
 std::string TrialsCsv(const Trials& trials) {
   CsvTable table;
   std::string text;
-  for (const auto& [unit, rows] : trials)
-    for (const Json& row : rows) text += table.Row(row);
+  for (const auto& [unit, result] : trials)
+    for (const Json& row : result.rows) text += table.Row(row);
+  return text;
+}
+
+std::string MapsCsv(const Trials& trials) {
+  CsvTable table;
+  std::string text;
+  for (const auto& [unit, result] : trials)
+    for (const Json& sample : result.map) {
+      Json row;
+      for (const char* key : {"finger", "criterion", "noise", "object", "seed"})
+        row[key] = result.rows.front().at(key);
+      row.update(sample);
+      text += table.Row(row);
+    }
   return text;
 }
 
@@ -137,7 +151,7 @@ Json Summary(const Plan& plan, const Trials& trials) {
   const Columns columns = ColumnsOf(plan);
   Json groups = Json::array();
   int n = 0;
-  for (const auto& [unit, rows] : trials) n += static_cast<int>(rows.size());
+  for (const auto& [unit, result] : trials) n += static_cast<int>(result.rows.size());
   const auto add = [&](const Json& name, const Json& wanted) {
     Json group = name;
     group.update(Group(columns, RowsWhere(trials, wanted)));
@@ -204,6 +218,8 @@ std::string SummaryTable(const Output& out, const Json& summary) {
 Json WriteResults(const Plan& plan, const Trials& trials, const fs::path& directory) {
   const Json summary = Summary(plan, trials);
   WriteFile(directory / "trials.csv", TrialsCsv(trials));
+  if (const std::string maps = MapsCsv(trials); !maps.empty())
+    WriteFile(directory / "maps.csv", maps);
   WriteFile(directory / "summary.json", summary.dump(1) + "\n");
   Draw(directory / "summary.json", directory / "summary.png");
   return summary;

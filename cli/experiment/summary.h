@@ -11,6 +11,9 @@ namespace regrasp::cli {
 /// RFC 4180, a line for each row in the order of the plan.
 std::string TrialsCsv(const Trials& trials);
 
+/// The same of the maps of phi, a line for each sample; empty without maps.
+std::string MapsCsv(const Trials& trials);
+
 /// {"experiment": the plan, "trials": n, "groups": [{"noise", "estimator", "finger" | "axis_W",
 /// "n", "counts": {NAME: {"k", "share", "low", "high"}}, "quantiles": {COLUMN: {"n", "min", "q05",
 /// "q25", "median", "q75", "q95", "max", "mean"}}}]}. Shares are of all n trials, also of those
@@ -21,8 +24,8 @@ Json Summary(const Plan& plan, const Trials& trials);
 /// The groups as a table for people.
 std::string SummaryTable(const Output& out, const Json& summary);
 
-/// Writes trials.csv, summary.json and summary.png into `directory`. Returns the summary. Throws
-/// CliError.
+/// Writes trials.csv, maps.csv (with maps only), summary.json and summary.png into `directory`.
+/// Returns the summary. Throws CliError.
 Json WriteResults(const Plan& plan, const Trials& trials, const std::filesystem::path& directory);
 
 }  // namespace regrasp::cli

@@ -138,15 +138,17 @@ void Prepare(SteppedDaemon* daemon, const Plan& plan) {
     daemon->Call("param.set", {{"name", name}, {"value", Value(value, name)}});
 }
 
-std::vector<Json> RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
-  if (plan.rotation()) return {Rotate(daemon, plan, unit)};
+UnitResult RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
+  if (plan.rotation()) return {{Rotate(daemon, plan, unit)}, nullptr};
+  UnitResult result;
   std::optional<PhiMap> map;
-  if (plan.rays > 0)
+  if (plan.rays > 0) {
     map = MapPhi(daemon, unit.noise, unit.seed, unit.subject, plan.criterion, plan.rays);
-  std::vector<Json> rows;
+    result.map = map->samples;
+  }
   for (const auto& estimator : plan.estimators)
-    rows.push_back(Explore(daemon, plan, unit, estimator, map));
-  return rows;
+    result.rows.push_back(Explore(daemon, plan, unit, estimator, map));
+  return result;
 }
 
 }  // namespace regrasp::cli

@@ -16,7 +16,7 @@ inline constexpr double kSuccessShare = 0.95;
 /// Sets the plan's parameters, for all runs to come. Throws CliError as the daemon refuses them.
 void Prepare(SteppedDaemon* daemon, const Plan& plan);
 
-/// Runs the unit and returns its rows: objects whose members are the columns of trials.csv.
-std::vector<Json> RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit);
+/// Runs the unit.
+UnitResult RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit);
 
 }  // namespace regrasp::cli

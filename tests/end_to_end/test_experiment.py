@@ -124,6 +124,10 @@ class Results(ExperimentCase):
             self.assertLess(float(row["phi_true_final"]), 1.05 * float(row["phi_best"]))
             self.assertEqual(row["near_best"] == "true", float(row["phi_true_final"]) >= 0.95 * float(row["phi_best"]))
             self.assertLess(float(row["phi_best_distance_m"]), 0.0095)
+        with open(self.dir / "map" / "maps.csv", newline="") as file:
+            samples = list(csv.DictReader(file))
+        self.assertEqual({sample["ray"] for sample in samples}, set(map(str, range(8))))
+        self.assertEqual(max(float(sample["phi"]) for sample in samples), float(rows[0]["phi_best"]))
 
     def test_rotation(self):
         self.run_experiment("rotation", "--angle", "20", "--axis=0,0,-1", "-n", "1", "--models-dir", SOURCE / "models", "-o", self.dir / "turn")
@@ -144,7 +148,7 @@ class Results(ExperimentCase):
 
 class Paper(ExperimentCase):
     def test_one_command_writes_the_page(self):
-        self.run_experiment("paper", "-n", "1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models", "-o", self.dir)
+        self.run_experiment("paper", "-n", "1", "--repeats", "1", "--turns", "0.1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models", "-o", self.dir)
         page = (self.dir / "reproduction.md").read_text()
         for picture in re.findall(r"\]\((reproduction/[^)]*\.png)\)", page):
             self.assertTrue((self.dir / picture).read_bytes().startswith(b"\x89PNG"), picture)
