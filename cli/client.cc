@@ -138,56 +138,70 @@ Json Client::Call(const std::string& method, const Json& params) {
   return Call(method, params, timeout_s_);
 }
 
-Json Client::Call(const std::string& method, const Json& params, double timeout_s) {
-  const auto deadline = Deadline(timeout_s);
+std::optional<Client::Message> Client::ReadMessage(Clock::time_point deadline) {
+  const auto line = ReadLine(deadline);
+  if (!line) return std::nullopt;
+  Json message = Json::parse(*line, nullptr, false);
+  if (!message.is_object()) {
+    throw CliError(kProtocol, fmt::format("{} does not speak JSON-RPC: {:.60}", path_, *line),
+                   "regrasp doctor");
+  }
+  if (message.contains("method")) return Message{0, message.value("params", Json::object())};
+  const Json id = message.value("id", Json());
+  Message answer{id.is_number_integer() ? id.get<long>() : -1, message.value("result", Json())};
+  if (message.contains("error")) {
+    const Json& error = message["error"];
+    const int code = error.value("code", 0);
+    std::string hint;
+    if (error.contains("data") && error["data"].is_object()) hint = error["data"].value("hint", "");
+    answer.error.emplace(ExitCodeFor(code), error.value("message", "refused without a reason"),
+                         hint, code);
+    // Refused before its id was understood: of the last request.
+    if (id.is_null()) answer.id = next_id_ - 1;
+  } else if (!message.contains("result")) {
+    throw CliError(kProtocol, fmt::format("{} answered with neither result nor error", path_),
+                   "regrasp version");
+  }
+  return answer;
+}
+
+long Client::Post(const std::string& method, const Json& params) {
   const long id = next_id_++;
   Json request = {{"jsonrpc", "2.0"}, {"id", id}, {"method", method}};
   if (!params.empty()) request["params"] = params;
-  Send(request.dump() + "\n", deadline);
+  Send(request.dump() + "\n", Deadline(timeout_s_));
+  return id;
+}
+
+std::optional<Client::Message> Client::Receive(double timeout_s) {
+  if (events_.empty()) return ReadMessage(timeout_s > 0 ? Deadline(timeout_s) : Clock::now());
+  Message message{0, std::move(events_.front())};
+  events_.pop_front();
+  return message;
+}
+
+Json Client::Call(const std::string& method, const Json& params, double timeout_s) {
+  const auto deadline = Deadline(timeout_s);
+  const long id = Post(method, params);
   while (true) {
-    const auto line = ReadLine(deadline);
-    if (!line) {
+    auto message = ReadMessage(deadline);
+    if (!message) {
       throw CliError(kTimeout, fmt::format("no answer to '{}' within {:g} s", method, timeout_s),
                      fmt::format("regrasp --timeout {:g} …, or regrasp doctor", 10 * timeout_s));
     }
-    Json message = Json::parse(*line, nullptr, false);
-    if (!message.is_object()) {
-      throw CliError(kProtocol, fmt::format("{} does not speak JSON-RPC: {:.60}", path_, *line),
-                     "regrasp doctor");
-    }
-    if (message.contains("method")) {
-      events_.push_back(message.value("params", Json::object()));
-      continue;
-    }
-    const Json answered = message.value("id", Json());
-    if (answered != id && !(answered.is_null() && message.contains("error"))) continue;
-    if (message.contains("error")) {
-      const Json& error = message["error"];
-      const int code = error.value("code", 0);
-      std::string hint;
-      if (error.contains("data") && error["data"].is_object())
-        hint = error["data"].value("hint", "");
-      throw CliError(ExitCodeFor(code), error.value("message", "refused without a reason"), hint,
-                     code);
-    }
-    if (!message.contains("result")) {
-      throw CliError(kProtocol, fmt::format("{} answered with neither result nor error", path_),
-                     "regrasp version");
-    }
-    return message["result"];
+    if (message->id == 0) events_.push_back(std::move(message->body));
+    if (message->id != id) continue;
+    if (message->error) throw *message->error;
+    return std::move(message->body);
   }
 }
 
 std::optional<Json> Client::NextEvent(double timeout_s) {
   const auto deadline = Deadline(timeout_s);
   while (events_.empty()) {
-    const auto line = ReadLine(deadline);
-    if (!line) return std::nullopt;
-    Json message = Json::parse(*line, nullptr, false);
-    if (!message.is_object()) {
-      throw CliError(kProtocol, fmt::format("{} does not speak JSON-RPC: {:.60}", path_, *line));
-    }
-    if (message.contains("method")) events_.push_back(message.value("params", Json::object()));
+    auto message = ReadMessage(deadline);
+    if (!message) return std::nullopt;
+    if (message->id == 0) events_.push_back(std::move(message->body));
   }
   Json event = std::move(events_.front());
   events_.pop_front();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/errors.h"
 #include "cli/wait.h"
 
 namespace regrasp::cli {
@@ -32,10 +33,24 @@ class Client {
   /// The parameters of the next notification, or nothing when none came within `timeout_s`.
   std::optional<Json> NextEvent(double timeout_s);
 
+  /// For callers that must not wait: sends a request and returns its id; its answer comes out of
+  /// Receive().
+  long Post(const std::string& method, const Json& params);
+  struct Message {
+    long id = 0;                         ///< of the request that this answers; 0: a notification
+    Json body;                           ///< the result, or the notification's parameters
+    std::optional<CliError> error = {};  ///< the daemon refused
+  };
+  /// The next message that is there already, or comes within `timeout_s`.
+  std::optional<Message> Receive(double timeout_s);
+  /// To wait for it together with something else.
+  int fd() const { return fd_; }
+
   const std::string& path() const { return path_; }
 
  private:
   std::optional<std::string> ReadLine(Clock::time_point deadline);
+  std::optional<Message> ReadMessage(Clock::time_point deadline);
   void Send(const std::string& line, Clock::time_point deadline);
   [[noreturn]] void Lost() const;
 

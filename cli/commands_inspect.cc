@@ -7,6 +7,7 @@
 
 #include "cli/context.h"
 #include "cli/jobs.h"
+#include "cli/top.h"
 
 namespace regrasp::cli {
 namespace {
@@ -48,6 +49,9 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const Json& noise = At(s, "noise");
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
+    const Json& incident = At(s, "incident");
+    if (incident.is_object() && (state == "dropped" || state == "faulted"))
+      line("incident", Plain(At(incident, "record")) + "    (regrasp plot incident)");
     line("daemon", fmt::format("regraspd {} on {}, {} client{}", Plain(At(s, "version")),
                                context.client().path(), Plain(At(s, "clients")),
                                At(s, "clients") == 1 ? "" : "s"));
@@ -346,6 +350,12 @@ std::vector<CommandSpec> InspectCommands() {
       MethodCommand("job.cancel", kGroup, JobShow, {.positional = {"id"}}),
       MethodCommand("events", kGroup, Events, {.extra = {follow}}),
       watch,
+      {"top",
+       kGroup,
+       "the run on a full screen: fingers, curves, events; keys to act",
+       nullptr,
+       {},
+       Top},
   };
 }
 

@@ -1,38 +1,23 @@
 // Results: pictures.
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 
 #include "cli/context.h"
-
-extern char** environ;
+#include "cli/run_files.h"
+#include "cli/terminal_graphics.h"
 
 namespace regrasp::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-void Show(const std::string& file) {
-  std::string program = "xdg-open", path = file;
-  char* argv[] = {program.data(), path.data(), nullptr};
-  pid_t pid = 0;
-  int status = 0;
-  const int error = ::posix_spawnp(&pid, "xdg-open", nullptr, nullptr, argv, environ);
-  if (error != 0 || ::waitpid(pid, &status, 0) != pid || status != 0) {
-    throw CliError(kFailed,
-                   fmt::format("cannot show {}: xdg-open {}", file,
-                               error != 0 ? std::strerror(error) : "failed"),
-                   "open it with a viewer of yours");
-  }
-}
-
 ExitCode Plot(Context& context, const Invocation& invocation) {
+  if (invocation.Has("show") && !context.out().human()) {
+    throw CliError(kUsage, "--show draws for people: it goes with neither --json nor --csv",
+                   "regrasp plot " + Plain(invocation.params["name"]) + " --show");
+  }
   Json answer = context.Call(invocation);
   std::string file = Plain(At(answer, "path"));
   if (invocation.Has("output")) {
@@ -49,29 +34,35 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
     answer["path"] = fs::absolute(target).string();
     answer["file"] = target.filename().string();
   }
+  // Drawn before anything is printed: an error leaves standard output empty.
+  const std::string picture = invocation.Has("show") ? DrawPicture(context, file) : "";
   context.Print(answer, [&] { context.out().Line(file); });
-  context.out().Flush();
-  if (invocation.Has("show")) Show(file);
+  context.out().Add(picture);
   return kOk;
 }
 
 }  // namespace
 
 std::vector<CommandSpec> ResultCommands() {
-  return {MethodCommand(
+  std::vector<CommandSpec> commands = {MethodCommand(
       "plot", "Results", Plot,
       {.positional = {"name"},
        .hidden = {"file"},
-       .extra = {{.key = "output",
-                  .flags = "-o,--output",
-                  .metavar = "FILE",
-                  .help = "copy the picture there",
-                  .default_text = "leave it in the daemon's output directory, print its path"},
-                 {.key = "show",
-                  .flags = "--show",
-                  .metavar = "",
-                  .kind = ArgKind::kFlag,
-                  .help = "open it in a viewer"}}})};
+       .extra = {
+           {.key = "output",
+            .flags = "-o,--output",
+            .metavar = "FILE",
+            .help = "copy the picture there",
+            .default_text = "leave it in the daemon's output directory, print its path"},
+           {.key = "show",
+            .flags = "--show",
+            .metavar = "",
+            .kind = ArgKind::kFlag,
+            .help = "draw it here: kitty or sixel graphics where the terminal can, else blocks; "
+                    "$REGRASP_GRAPHICS: kitty, sixel, blocks, dots"}}})};
+  for (auto* group : {RunFileCommands, CheckpointCommands})
+    for (CommandSpec& command : group()) commands.push_back(std::move(command));
+  return commands;
 }
 
 }  // namespace regrasp::cli

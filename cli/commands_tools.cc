@@ -14,6 +14,7 @@
 #include "cli/examples.h"
 #include "cli/help.h"
 #include "cli/manual.h"
+#include "cli/shell.h"
 #include "core/quality/evaluate_json.h"
 
 namespace regrasp::cli {
@@ -151,6 +152,20 @@ std::vector<CommandSpec> ToolCommands() {
          .required = true},
         {.key = "params", .flags = "", .metavar = "JSON", .help = "its parameters, an object"}},
        Call},
+      {"shell",
+       kGroup,
+       "commands one after the other: typed, from FILE, or from standard input",
+       nullptr,
+       {{.key = "file",
+         .flags = "",
+         .metavar = "FILE",
+         .help = "a command a line, # begins a comment; stops at the first that fails"},
+        {.key = "keep_going",
+         .flags = "--keep-going",
+         .metavar = "",
+         .kind = ArgKind::kFlag,
+         .help = "go on after a failure; the first one's exit code is the exit code"}},
+       Shell},
       {"doctor", kGroup, "check program, models, physics, socket and daemon", nullptr, {}, Doctor},
       {"bench",
        kGroup,

@@ -57,6 +57,7 @@ constexpr Example kExamples[] = {
     {"watch", "regrasp --json watch truth --count 2", "JSON, one line each"},
 
     {"plot", "regrasp plot quality -o quality.png", "the last ten minutes as curves"},
+    {"plot", "regrasp plot quality --show", "here in the terminal"},
     {"plot", "regrasp plot scene -o scene.png", "the hand as it is now"},
 
     {"experiment exploration", "regrasp experiment exploration --finger ring --seeds 10 -o ring", "ten runs, a table, a picture"},

@@ -95,8 +95,9 @@ struct GlobalOptions {
   std::optional<double> timeout_s;  ///< --timeout
 };
 
-/// Reads the arguments. Throws CliError(kUsage) that names the argument and the nearest name. A
-/// request for help becomes an invocation of `help`.
+/// Reads the arguments; `options` holds the defaults and takes what the arguments say. Throws
+/// CliError(kUsage) that names the argument and the nearest name. A request for help becomes an
+/// invocation of `help`, no command at all on a terminal one of `shell`.
 Invocation Parse(int argc, const char* const* argv, GlobalOptions* options);
 
 /// Whether `--json` is among the arguments: for errors that come before they are understood.

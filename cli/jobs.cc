@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "cli/wrap.h"
+
 namespace regrasp::cli {
 namespace {
 
@@ -108,6 +110,10 @@ void PrintJob(Output& out, const Json& record) {
                                           : good ? Style::kGood
                                                  : Style::kBad)));
   if (At(record, "error").is_string()) out.Line("  error      " + Plain(At(record, "error")));
+  if (const Json& incident = At(record, "incident"); incident.is_object()) {
+    out.Add(Wrap("  cause      " + Plain(At(incident, "cause")), 13));
+    out.Line("  incident   " + Plain(At(incident, "record")) + "    (regrasp plot incident)");
+  }
   if (ended && record.value("method", "") == "explore" && state == "done")
     PrintExplore(out, record);
   if (ended && record.value("method", "") == "rotate" && At(record, "angle_rad").is_number())

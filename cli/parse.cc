@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -236,6 +237,7 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   std::string color, timeout;
   app.add_option("-s,--socket", options->socket);
   app.add_flag("--json", json)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  if (options->json) json = 1;  // after add_flag, which sets it to 0
   app.add_flag("--csv", options->csv);
   app.add_flag("-q,--quiet", options->quiet);
   app.add_flag("-v,--verbose", options->verbose);
@@ -304,6 +306,13 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
       return show;
     }
     if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+      if (scope.empty() && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDOUT_FILENO) == 1) {
+        Invocation shell;
+        shell.params = Json::object();
+        shell.command = FindCommands("shell").front();
+        options->json = json > 0;
+        return shell;
+      }
       throw CliError(
           kUsage,
           scope.empty() ? "no command given" : fmt::format("'{}' needs a further word", scope),

@@ -33,6 +33,7 @@ class Output {
   Format format() const { return format_; }
   bool human() const { return format_ == Format::kHuman; }
   bool color() const { return color_; }
+  bool utf8() const { return utf8_; }
 
   /// Adds text, as it is.
   void Add(std::string_view text) { text_ += text; }

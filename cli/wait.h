@@ -1,8 +1,11 @@
 #pragma once
 
-/// Waiting that SIGINT and SIGTERM can end, without races.
+/// Waiting that signals can end, without races.
+
+#include <poll.h>
 
 #include <chrono>
+#include <span>
 
 namespace regrasp::cli {
 
@@ -11,8 +14,8 @@ using Clock = std::chrono::steady_clock;
 /// The time `seconds` from now; a huge value (a year) when `seconds` is 0 or less: no limit.
 Clock::time_point Deadline(double seconds);
 
-/// While an Interruptible lives, SIGINT and SIGTERM no longer kill the program: the wait in
-/// progress, or the next one, throws CliError(kInterrupted) instead.
+/// While an Interruptible lives, SIGINT, SIGTERM, SIGHUP and SIGQUIT no longer kill the program:
+/// the wait in progress, or the next one, throws CliError(kInterrupted) instead.
 class Interruptible {
  public:
   Interruptible();
@@ -25,7 +28,12 @@ class Interruptible {
 /// With fd = -1 only waits. Throws CliError(kInterrupted).
 bool WaitFor(int fd, short events, Clock::time_point deadline);
 
-/// Throws CliError(kInterrupted) if a signal came while an Interruptible lived.
+/// Waits until one of `fds` is ready (its `revents` says for what), the deadline has passed, or a
+/// signal with another handler came (a new window size). Throws CliError(kInterrupted).
+void WaitForAny(std::span<pollfd> fds, Clock::time_point deadline);
+
+/// Throws CliError(kInterrupted) if a signal came since the outermost living Interruptible was
+/// made.
 void CheckInterrupt();
 
 }  // namespace regrasp::cli

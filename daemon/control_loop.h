@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/journal/replay.h"
 #include "core/session/session.h"
 #include "daemon/pacing.h"
 #include "daemon/ring.h"
@@ -20,19 +21,51 @@ namespace regrasp {
 
 /// What the I/O thread asks of the control thread.
 struct ControlRequest {
-  enum class Kind : std::uint8_t { kCommand, kPause, kResume, kStep, kCancelStep };
+  enum class Kind : std::uint8_t {
+    kCommand,
+    kPause,
+    kResume,
+    kStep,
+    kCancelStep,  ///< ends a step or a restore
+    kMark,        ///< tells tick and state hash, see JournalNews
+    kRestore,
+  };
   Kind kind = Kind::kCommand;
-  Command command = {};    ///< kCommand
-  std::int64_t job = 0;    ///< kStep, kCancelStep
+  Command command = {};    ///< kCommand; kRestore: the branch command (job, reseed, seed)
+  std::int64_t job = 0;    ///< kStep, kCancelStep, kRestore
   std::int64_t ticks = 0;  ///< kStep
+  std::shared_ptr<const Checkpoint> checkpoint = {};  ///< kRestore
+};
+
+/// How a run began: at tick 0, or as the continuation of a checkpoint.
+struct RunStart {
+  Journal journal;  ///< up to the present
+  bool restored = false;
+  // In force now:
+  Parameters parameters;
+  NoiseLevels noise;
+  std::uint64_t seed = 0;
+};
+
+/// What happens to the journal, in order; the I/O thread keeps it.
+struct JournalNews {
+  enum class Kind : std::uint8_t { kBegin, kCommand, kMark };
+  Kind kind = Kind::kCommand;
+  std::uint64_t run = 0;
+  JournalEntry entry = {};                     ///< kCommand; kMark: tick and hash
+  std::uint64_t request = 0;                   ///< kMark: number of the request
+  JobRecord job = {};                          ///< kMark: the job that runs; id 0 = none
+  SessionState state = {};                     ///< kMark
+  std::shared_ptr<const RunStart> start = {};  ///< kBegin
 };
 
 /// One published tick.
 struct Published {
   Frame frame;
   bool paused = false;
-  JobRecord step;         ///< the running or last step job; id 0 = none yet
-  std::uint64_t run = 0;  ///< counts resets
+  JobRecord step;            ///< the running or last step or restore; id 0 = none yet
+  std::uint64_t run = 0;     ///< counts resets
+  std::size_t commands = 0;  ///< of the run, applied before this state
 };
 
 /// An event, or a finished job, and the run it belongs to.
@@ -75,6 +108,7 @@ class ControlLoop {
   bool PopFrame(Published* frame) { return frames_.Pop(frame); }
   bool PopEvent(PublishedEvent* event) { return events_.Pop(event); }
   bool PopJob(JobRecord* job) { return jobs_.Pop(job); }
+  bool PopNews(JournalNews* news) { return news_.Pop(news); }
   /// 99th percentile of how long after their due time the last ticks began [s]; 0 at full speed.
   double lateness_p99() const { return lateness_.p99(); }
   /// Grows with every tick, and while the clock is stopped on purpose with every Nudge(): a loop
@@ -84,6 +118,8 @@ class ControlLoop {
   void Nudge() { input_.Notify(); }
   /// Frames and events lost because the rings were full.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+  /// 99th percentile of the time that the last ticks took [s].
+  double tick_p99() const { return tick_times_.p99(); }
   /// Notified when a frame, an event, a job or an acknowledgement is there.
   Wake& output() { return output_; }
 
@@ -97,6 +133,15 @@ class ControlLoop {
   void TakeRequests();
   void ApplyWaiting();
   void Reset(const Command& command);
+  void CancelEverything(const char* why);
+  void BeginRestore(ControlRequest request);
+  void RestoreSome();
+  void Adopt();
+  void EndRestore(JobState state, const char* error);
+  void Apply(const Command& command);
+  void Mark(std::uint64_t request);
+  void BeginJournal(std::shared_ptr<const RunStart> start);
+  void EmitNews(JournalNews news);
   void TickOnce();
   void FinishStep(JobState state, const char* error);
   void EmitJob(const JobRecord& job);
@@ -111,19 +156,24 @@ class ControlLoop {
   bool paused_ = false;
   std::int64_t steps_left_ = 0, steps_total_ = 0;
   JobRecord step_;
+  ControlRequest restoring_;        ///< while replay_ is there
+  std::unique_ptr<Replay> replay_;  ///< on its way to the checkpoint; the session stands still
   std::uint64_t run_ = 0;
-  std::vector<Waiting> commands_;       ///< taken, to be applied before the next tick
-  std::vector<JobRecord> unsent_jobs_;  ///< finished while the ring was full
-  std::uint64_t taken_ = 0;             ///< number of the last request taken
-  bool publish_due_ = true;             ///< something changed that the last frame does not show
+  std::size_t applied_ = 0;               ///< commands of the run
+  std::vector<Waiting> commands_;         ///< taken, to be applied before the next tick
+  std::vector<JobRecord> unsent_jobs_;    ///< finished while the ring was full
+  std::vector<JournalNews> unsent_news_;  ///< likewise
+  std::uint64_t taken_ = 0;               ///< number of the last request taken
+  bool publish_due_ = true;               ///< something changed that the last frame does not show
   Published scratch_;
-  TickTimes lateness_;
+  TickTimes tick_times_, lateness_;
 
   std::uint64_t posted_ = 0;  // I/O thread
   Ring<Waiting, 256> requests_;
   Ring<Published, 128> frames_;
   Ring<PublishedEvent, 1024> events_;
   Ring<JobRecord, 256> jobs_;
+  Ring<JournalNews, 1024> news_;
   std::atomic<std::uint64_t> acknowledged_{0};
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> pulse_{0};

@@ -4,8 +4,10 @@
 
 #include <vector>
 
+#include "core/gait/finger_gait.h"
 #include "core/quality/epsilon.h"
 #include "core/sensing/noise.h"
+#include "daemon/incident.h"
 
 namespace regrasp {
 namespace {
@@ -64,8 +66,6 @@ std::string_view MeasureName(const Parameters& parameters) {
 
 }  // namespace
 
-std::string HashText(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
-
 Json ContactsJson(const Frame& frame, const HandModel& hand) {
   Json fingers = Json::object();
   for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
@@ -77,11 +77,13 @@ Json ContactsJson(const Frame& frame, const HandModel& hand) {
                                      {"force_n", f.force},
                                      {"force_command_W_n", Vector(f.f_command_W)}};
   }
-  return {
-      {"tick", frame.tick},
-      {"time_s", frame.time_s},
-      {"object", {{"p_WO_m", Vector(frame.p_WO_sensed)}, {"q_WO_wxyz", Wxyz(frame.q_WO_sensed)}}},
-      {"fingers", std::move(fingers)}};
+  return {{"tick", frame.tick},
+          {"time_s", frame.time_s},
+          {"object",
+           {{"p_WO_m", Vector(frame.p_WO_sensed)},
+            {"q_WO_wxyz", Wxyz(frame.q_WO_sensed)},
+            {"p_WO_reference_m", Vector(frame.p_WO_reference)}}},
+          {"fingers", std::move(fingers)}};
 }
 
 Json JointsJson(const Frame& frame, const HandModel& hand) {
@@ -167,6 +169,16 @@ Json TruthJson(const Frame& frame, const HandModel& hand) {
           {"stand_in", frame.stand_in}};
 }
 
+Json GaitJson(const GaitFrame& gait, const HandModel& hand) {
+  return {{"active", gait.active},
+          {"phase", gait.active ? Json(Name(static_cast<GaitPhase>(gait.phase))) : Json()},
+          {"finger", FingerName(hand, gait.finger)},
+          {"target_angle_rad", gait.target_angle_rad},
+          {"achieved_angle_rad", gait.achieved_angle_rad},
+          {"cycles", gait.cycles},
+          {"regrasps", gait.regrasps}};
+}
+
 Json EventJson(const Event& event, const HandModel& hand, double dt) {
   Json json = {{"tick", event.tick},
                {"t_s", static_cast<double>(event.tick) * dt},
@@ -178,6 +190,8 @@ Json EventJson(const Event& event, const HandModel& hand, double dt) {
   if (event.kind == EventKind::kJobStarted || event.kind == EventKind::kJobFinished)
     json["job"] = static_cast<std::int64_t>(event.value);
   json["text"] = event.text;
+  if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
+    json["incident"] = IncidentName(event.tick) + ".json";
   return json;
 }
 

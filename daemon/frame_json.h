@@ -18,6 +18,8 @@ Json JointsJson(const Frame& frame, const HandModel& hand);
 Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters);
 /// What only the simulator knows.
 Json TruthJson(const Frame& frame, const HandModel& hand);
+/// Where the finger gait is, while rotating; `active` false otherwise.
+Json GaitJson(const GaitFrame& gait, const HandModel& hand);
 /// One event; `dt` [s] turns its tick into a time.
 Json EventJson(const Event& event, const HandModel& hand, double dt);
 /// Preset name and every level.
@@ -26,7 +28,5 @@ Json NoiseJson(const NoiseLevels& levels);
 Json JobJson(const JobRecord& job, const HandModel& hand);
 /// One row of the parameter table with its value.
 Json ParameterJson(const ParameterInfo& info, Parameters& parameters);
-/// 16 hex digits.
-std::string HashText(std::uint64_t hash);
 
 }  // namespace regrasp

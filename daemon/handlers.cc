@@ -12,6 +12,9 @@ struct Entry {
 };
 
 constexpr std::array kHandlers = {
+    Entry{"checkpoint.list", handlers::CheckpointList},
+    Entry{"checkpoint.restore", handlers::CheckpointRestore},
+    Entry{"checkpoint.save", handlers::CheckpointSave},
     Entry{"contacts", handlers::Contacts},
     Entry{"describe", handlers::Describe},
     Entry{"events", handlers::Events},
@@ -31,6 +34,9 @@ constexpr std::array kHandlers = {
     Entry{"plot", handlers::Plot},
     Entry{"push", handlers::Push},
     Entry{"quality", handlers::Quality},
+    Entry{"record.list", handlers::RecordList},
+    Entry{"record.start", handlers::RecordStart},
+    Entry{"record.stop", handlers::RecordStop},
     Entry{"release", handlers::Release},
     Entry{"reset", handlers::Reset},
     Entry{"resume", handlers::Resume},

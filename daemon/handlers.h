@@ -46,6 +46,16 @@ Outcome JobGet(Service&, const Params&, Client&);
 Outcome JobList(Service&, const Params&, Client&);
 Outcome JobWait(Service&, const Params&, Client&);
 
+// checkpoints.cc
+Outcome CheckpointList(Service&, const Params&, Client&);
+Outcome CheckpointRestore(Service&, const Params&, Client&);
+Outcome CheckpointSave(Service&, const Params&, Client&);
+
+// recordings.cc
+Outcome RecordList(Service&, const Params&, Client&);
+Outcome RecordStart(Service&, const Params&, Client&);
+Outcome RecordStop(Service&, const Params&, Client&);
+
 // results.cc
 Outcome Plot(Service&, const Params&, Client&);
 

@@ -4,8 +4,14 @@ namespace regrasp {
 
 void History::Add(const Frame& frame) {
   // Half a tick of slack: times are multiples of dt, their differences carry rounding.
-  if (!fine_.empty() && frame.time_s - fine_.back()->time_s < kFinePeriod - 1e-4) return;
-  fine_.push_back(std::make_shared<const Frame>(frame));
+  const auto due = [&frame](const auto& kept, double period) {
+    return kept.empty() || frame.time_s - kept.back()->time_s >= period - 1e-4;
+  };
+  if (!due(recent_, kRecentPeriod)) return;
+  recent_.push_back(std::make_shared<const Frame>(frame));
+  if (recent_.size() > kRecent) recent_.pop_front();
+  if (!due(fine_, kFinePeriod)) return;
+  fine_.push_back(recent_.back());
   AddToExploration(fine_.back());
   if (fine_.size() <= kFine) return;
   if (aged_++ % kCoarseEvery == 0) coarse_.push_back(fine_.front());
@@ -33,6 +39,7 @@ void History::Add(const Event& event) {
 
 void History::Clear() {
   fine_.clear();
+  recent_.clear();
   coarse_.clear();
   events_.clear();
   aged_ = 0;

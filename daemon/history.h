@@ -1,7 +1,7 @@
 #pragma once
 
 /// The frames that pictures are drawn from: the last minute at 50 Hz, the nine minutes before at 5
-/// Hz (about 35 MB in all). I/O thread only.
+/// Hz (about 35 MB in all), and the last five seconds at 100 Hz. I/O thread only.
 
 #include <deque>
 #include <memory>
@@ -17,12 +17,16 @@ class History {
   static constexpr std::size_t kFine = 3000;    ///< frames: 60 s
   static constexpr std::size_t kCoarse = 2700;  ///< frames: 540 s
   static constexpr std::size_t kCoarseEvery =
-      10;  ///< one of so many fine frames is kept for longer
+      10;                                        ///< one of so many fine frames is kept for longer
+  static constexpr double kRecentPeriod = 0.01;  ///< [s of simulated time]
+  static constexpr std::size_t kRecent = 500;    ///< frames: 5 s, so that 2 s before an event are
+                                                 ///< still there when the event is looked at
   static constexpr std::size_t kEvents = 4096;
   static constexpr std::size_t kExplorations = 2;
   static constexpr std::size_t kExplorationFrames = 6000;  ///< of one; 120 s, the rest is cut off
 
-  /// Keeps the frame when kFinePeriod has passed since the last one kept.
+  /// Keeps the frame when kRecentPeriod has passed since the last one kept, for long when
+  /// kFinePeriod has.
   void Add(const Frame& frame);
   void Add(const Event& event);
   /// Forgets everything but the explorations: a new run began.
@@ -30,6 +34,10 @@ class History {
 
   /// Frames of the last `last_s` seconds of simulated time (0 = all), oldest first.
   std::vector<std::shared_ptr<const Frame>> Frames(double last_s) const;
+  /// The last kRecent frames at 100 Hz, oldest first.
+  std::vector<std::shared_ptr<const Frame>> Recent() const {
+    return {recent_.begin(), recent_.end()};
+  }
   /// Frames of the last explorations (jobs, not those of a gait), oldest first, at most
   /// kExplorations of them. They outlive a reset, so that runs can be compared.
   std::vector<std::vector<std::shared_ptr<const Frame>>> Explorations() const {
@@ -42,7 +50,7 @@ class History {
  private:
   void AddToExploration(const std::shared_ptr<const Frame>& frame);
 
-  std::deque<std::shared_ptr<const Frame>> coarse_, fine_;
+  std::deque<std::shared_ptr<const Frame>> coarse_, fine_, recent_;
   std::deque<std::vector<std::shared_ptr<const Frame>>> explorations_;
   bool exploring_ = false;  ///< the last frame kept belongs to explorations_.back()
   std::size_t aged_ = 0;    ///< frames that have left the fine part

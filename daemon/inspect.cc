@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/journal/journal.h"
 #include "daemon/frame_json.h"
 #include "daemon/handlers.h"
 
@@ -13,34 +14,37 @@ Json StatusJson(Service& service) {
   const Published& newest = service.newest();
   const Frame& frame = newest.frame;
   Json job;
-  if (const JobRecord* known = service.jobs().Find(frame.job.id))
-    job = JobJson(*known, service.hand());
-  if (const JobRecord* pending = service.jobs().Unfinished())
-    job = JobJson(*pending, service.hand());
+  if (const JobRecord* known = service.jobs().Find(frame.job.id)) job = service.JobAnswer(*known);
+  if (const JobRecord* pending = service.jobs().Unfinished()) job = service.JobAnswer(*pending);
   const double speed = service.speed();
   const auto uptime = std::chrono::steady_clock::now() - service.started();
-  return {{"version", Version()},
-          {"protocol", kWireVersion},
-          {"state", Name(frame.state)},
-          {"paused", newest.paused},
-          {"tick", frame.tick},
-          {"time_s", frame.time_s},
-          {"dt_s", service.dt()},
-          {"state_hash", HashText(frame.state_hash)},
-          {"real_time_factor", service.real_time_factor()},
-          {"lateness_p99_s", service.control().lateness_p99()},
-          {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
-          {"seed", frame.seed},
-          {"hand", service.hand().name},
-          {"object", service.accepted.object->name},
-          {"stand_in", frame.stand_in},
-          {"job", std::move(job)},
-          {"noise", NoiseJson(service.accepted.noise)},
-          {"clients", service.host().clients()},
-          {"backlog", service.control().backlog()},
-          {"frames_dropped", service.control().dropped()},
-          {"uptime_s", std::chrono::duration<double>(uptime).count()},
-          {"output_dir", service.config().output_dir.string()}};
+  return {
+      {"version", Version()},
+      {"protocol", kWireVersion},
+      {"state", Name(frame.state)},
+      {"paused", newest.paused},
+      {"tick", frame.tick},
+      {"time_s", frame.time_s},
+      {"dt_s", service.dt()},
+      {"state_hash", HashText(frame.state_hash)},
+      {"real_time_factor", service.real_time_factor()},
+      {"tick_p99_s", service.control().tick_p99()},
+      {"lateness_p99_s", service.control().lateness_p99()},
+      {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
+      {"seed", frame.seed},
+      {"hand", service.hand().name},
+      {"object", service.accepted.object->name},
+      {"stand_in", frame.stand_in},
+      {"job", std::move(job)},
+      {"incident", service.incident_summary()},
+      {"gait", GaitJson(frame.gait, service.hand())},
+      {"noise", NoiseJson(service.accepted.noise)},
+      {"recording", service.recorder ? Json(service.recorder->path().filename().string()) : Json()},
+      {"clients", service.host().clients()},
+      {"backlog", service.control().backlog()},
+      {"frames_dropped", service.control().dropped()},
+      {"uptime_s", std::chrono::duration<double>(uptime).count()},
+      {"output_dir", service.config().output_dir.string()}};
 }
 
 namespace handlers {

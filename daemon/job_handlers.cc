@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "daemon/frame_json.h"
 #include "daemon/handlers.h"
 
 namespace regrasp::handlers {
@@ -21,21 +20,21 @@ const JobRecord& Existing(Service& service, const Params& params) {
 }  // namespace
 
 Outcome JobGet(Service& service, const Params& params, Client&) {
-  return {.result = JobJson(Existing(service, params), service.hand())};
+  return {.result = service.JobAnswer(Existing(service, params))};
 }
 
 Outcome JobList(Service& service, const Params&, Client&) {
   Json jobs = Json::array();
-  for (const JobRecord& job : service.jobs().jobs()) jobs.push_back(JobJson(job, service.hand()));
+  for (const JobRecord& job : service.jobs().jobs()) jobs.push_back(service.JobAnswer(job));
   return {.result = {{"jobs", std::move(jobs)}}};
 }
 
 Outcome JobCancel(Service& service, const Params& params, Client&) {
   const JobRecord& job = Existing(service, params);
-  if (Ended(job.state)) return {.result = JobJson(job, service.hand())};
+  if (Ended(job.state)) return {.result = service.JobAnswer(job)};
   const std::int64_t id = job.id;
   std::uint64_t barrier = 0;
-  if (job.method == JobMethod::kStep) {
+  if (job.method == JobMethod::kStep || job.method == JobMethod::kRestore) {
     barrier = service.Post({.kind = ControlRequest::Kind::kCancelStep, .job = id});
   } else {
     service.CheckAllowed(CommandType::kCancelJob);
@@ -46,7 +45,7 @@ Outcome JobCancel(Service& service, const Params& params, Client&) {
   }
   return {.barrier = barrier, .later = [&service, id] {
             const JobRecord* now = service.jobs().Find(id);
-            return now ? JobJson(*now, service.hand()) : Json();
+            return now ? service.JobAnswer(*now) : Json();
           }};
 }
 
@@ -63,7 +62,7 @@ Outcome JobWait(Service& service, const Params& params, Client&) {
     const auto pending = std::make_shared<Pending>();
     pending->waiter = service.jobs().Wait(id, [&service, pending, done](const JobRecord& job) {
       if (pending->timer) service.host().Cancel(pending->timer);
-      done(JobJson(job, service.hand()), nullptr);
+      done(service.JobAnswer(job), nullptr);
     });
     if (pending->waiter == 0 || !limited) return;
     pending->timer = service.host().After(timeout_s, [&service, pending, done, id, timeout_s] {

@@ -67,6 +67,11 @@ const JobRecord* JobTable::Unfinished() const {
   return nullptr;
 }
 
+const JobRecord* JobTable::Restoring() const {
+  const JobRecord* job = Unfinished();
+  return job && job->method == JobMethod::kRestore ? job : nullptr;
+}
+
 const JobRecord* JobTable::UnfinishedStep() const {
   for (auto it = jobs_.rbegin(); it != jobs_.rend(); ++it)
     if (!Ended(it->state) && it->method == JobMethod::kStep) return &*it;

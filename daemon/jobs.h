@@ -32,6 +32,8 @@ class JobTable {
   const std::deque<JobRecord>& jobs() const { return jobs_; }
   /// A job that has not ended, other than a step; null when there is none.
   const JobRecord* Unfinished() const;
+  /// The restore of a checkpoint that has not ended, or null.
+  const JobRecord* Restoring() const;
   /// The same for steps.
   const JobRecord* UnfinishedStep() const;
 

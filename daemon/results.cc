@@ -1,40 +1,18 @@
 // Requests that produce files.
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <exception>
 #include <filesystem>
 
+#include "daemon/files.h"
 #include "daemon/handlers.h"
+#include "daemon/output_file.h"
 #include "snapshots/snapshots.h"
 
 namespace regrasp::handlers {
 namespace {
-
-constexpr std::size_t kMaxFileName = 128;
-
-/// A plain file name with a picture's suffix; throws otherwise (rule 9).
-std::string CheckedFileName(const std::string& name) {
-  const auto refuse = [](std::string message) {
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                std::move(message),
-                                "give a plain name such as quality.png",
-                                "file",
-                                {".png", ".jpg", ".jpeg"}});
-  };
-  if (name.empty() || name.size() > kMaxFileName)
-    refuse(fmt::format("file name of {} bytes; allowed are 1 to {}", name.size(), kMaxFileName));
-  const bool control =
-      std::ranges::any_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  if (control || name.find('/') != std::string::npos || name.front() == '.')
-    refuse("file is not a plain file name");
-  const std::string suffix = std::filesystem::path(name).extension().string();
-  if (suffix != ".png" && suffix != ".jpg" && suffix != ".jpeg")
-    refuse(fmt::format("file '{}' is not a picture", name));
-  return name;
-}
 
 /// Everything the worker needs, so that it shares nothing with the I/O thread.
 struct Job {
@@ -43,6 +21,7 @@ struct Job {
   std::vector<std::shared_ptr<const Frame>> frames;
   std::vector<Event> events;
   std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;  ///< comparison
+  std::shared_ptr<const Incident> incident;                             ///< incident
   HandModel hand;
   std::shared_ptr<const ObjectModel> object;
   PlotOptions options;
@@ -70,28 +49,26 @@ void DrawComparison(const Job& job, const std::string& path) {
   PlotQualityComparison(runs, job.hand, job.options, path);
 }
 
-/// Draws beside the target and renames: a reader sees the old picture or the new one, and a
-/// symbolic link is replaced, not followed.
+void DrawInto(const Job& job, const std::string& path) {
+  if (job.name == "incident")
+    return DrawIncident(*job.incident, job.hand, job.options.last_s, path);
+  const std::vector<Frame> history = Copy(job.frames);
+  if (job.name == "comparison")
+    DrawComparison(job, path);
+  else if (job.name == "contacts")
+    PlotContacts(history, job.hand, *job.object, job.options, path);
+  else if (job.name == "gait")
+    PlotGait(history, job.events, job.hand, job.options, path);
+  else if (job.name == "scene")
+    PlotScene(history.back(), job.hand, *job.object, job.options, path);
+  else
+    PlotQuality(history, job.events, job.hand, job.options, path);
+}
+
 void Draw(Job* job) {
   try {
-    std::filesystem::create_directories(job->directory);
-    const std::filesystem::path target = job->directory / job->file;
-    const std::filesystem::path draft =
-        job->directory / fmt::format(".draft{}", target.extension().string());
-    const std::vector<Frame> history = Copy(job->frames);
-    std::filesystem::remove(draft);
-    if (job->name == "comparison")
-      DrawComparison(*job, draft.string());
-    else if (job->name == "contacts")
-      PlotContacts(history, job->hand, *job->object, job->options, draft.string());
-    else if (job->name == "gait")
-      PlotGait(history, job->events, job->hand, job->options, draft.string());
-    else if (job->name == "scene")
-      PlotScene(history.back(), job->hand, *job->object, job->options, draft.string());
-    else
-      PlotQuality(history, job->events, job->hand, job->options, draft.string());
-    job->bytes = std::filesystem::file_size(draft);
-    std::filesystem::rename(draft, target);
+    job->bytes = WriteOutput(job->directory / job->file,
+                             [job](const std::string& draft) { DrawInto(*job, draft); });
   } catch (const std::exception& e) {
     job->failure = e.what();
   }
@@ -102,13 +79,22 @@ void Draw(Job* job) {
 Outcome Plot(Service& service, const Params& params, Client&) {
   const auto job = std::make_shared<Job>();
   job->name = params.String("name");
-  job->file = CheckedFileName(params.String("file", job->name + ".png"));
+  job->file = CheckedFileName(params.String("file", job->name + ".png"), "file",
+                              {".png", ".jpg", ".jpeg"}, "quality.png");
   job->options.last_s = params.Number("last_s", 0);
   job->options.object_name = service.accepted.object->name;
   job->frames = service.history().Frames(job->options.last_s);
   if (job->name == "scene") {
     job->frames = {std::make_shared<const Frame>(service.newest().frame)};
     job->options.last_s = 0;
+  }
+  if (job->name == "incident") {
+    job->incident = service.incident();
+    if (!job->incident)
+      throw RpcException(ErrorCode::kNotFound,
+                         "no incident: nothing was dropped since this daemon started",
+                         "regrasp plot quality");
+    job->frames = job->incident->frames;
   }
   if (job->frames.empty())
     throw RpcException(ErrorCode::kBadState, "nothing has happened yet", "regrasp grasp");
@@ -125,7 +111,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->hand = service.hand();
   job->object = service.accepted.object;
   job->directory = service.config().output_dir;
-  const std::int64_t tick = job->frames.back()->tick;
+  const std::int64_t tick = job->incident ? job->incident->event.tick : job->frames.back()->tick;
 
   Outcome outcome;
   outcome.begin = [&service, job, tick](Done done) {

@@ -1,15 +1,19 @@
 #include "daemon/service.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "daemon/frame_json.h"
 #include "daemon/handlers.h"
+#include "daemon/incident.h"
+#include "daemon/output_file.h"
 
 namespace regrasp {
 namespace {
 
 constexpr std::size_t kMaxBacklog = 64;    // commands that wait for a tick
 constexpr std::size_t kEventsKept = 1000;  // for `events`
+constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
 
 }  // namespace
 
@@ -49,12 +53,31 @@ std::vector<Event> Service::Drain() {
   std::vector<PublishedEvent> news;
   for (PublishedEvent event; control_.PopEvent(&event);) news.push_back(event);
 
-  bool fresh = false;
-  for (Published published; control_.PopFrame(&published);) {
+  // Journal news go before the frames that show them.
+  std::vector<Published> frames;
+  for (Published published; control_.PopFrame(&published);) frames.push_back(published);
+  for (JournalNews item; control_.PopNews(&item);) TakeIn(item);
+
+  const bool fresh = !frames.empty();
+  for (const Published& published : frames) {
     if (published.run != newest_.run) history_.Clear();
     history_.Add(published.frame);
+    if (recorder) recorder->Add(published);
     newest_ = published;
-    fresh = true;
+  }
+  std::vector<Event> events;
+  for (const PublishedEvent& published : news) {
+    const Event& event = published.event;
+    if (published.run == newest_.run) {
+      history_.Add(event);
+      // Before anybody hears of the drop, so that its record is there when they do.
+      if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
+        RecordIncident(event);
+    }
+    if (recorder) recorder->Add(event, published.run);
+    events_.push_back(event);
+    if (events_.size() > kEventsKept) events_.pop_front();
+    events.push_back(event);
   }
   if (fresh) {
     ++frame_number_;
@@ -69,15 +92,84 @@ std::vector<Event> Service::Drain() {
     if (newest_.step.id != 0) jobs_.Update(newest_.step);
   }
   for (const JobRecord& job : ended) jobs_.Update(job);
-
-  std::vector<Event> events;
-  for (const PublishedEvent& published : news) {
-    if (published.run == newest_.run) history_.Add(published.event);
-    events_.push_back(published.event);
-    if (events_.size() > kEventsKept) events_.pop_front();
-    events.push_back(published.event);
-  }
   return events;
+}
+
+void Service::TakeIn(const JournalNews& news) {
+  switch (news.kind) {
+    case JournalNews::Kind::kBegin:
+      journal_ = news.start->journal;
+      run_ = news.run;
+      if (recorder) recorder->Begin(journal_, run_);
+      if (!news.start->restored) break;
+      accepted.parameters = news.start->parameters;
+      accepted.noise = news.start->noise;
+      accepted.seed = news.start->seed;
+      accepted.object = std::make_shared<const ObjectModel>(journal_.config.model.object);
+      break;
+    case JournalNews::Kind::kCommand:
+      journal_.entries.push_back(news.entry);
+      if (recorder) recorder->Add(news.entry, news.run);
+      break;
+    case JournalNews::Kind::kMark:
+      if (const auto mark = marks_.extract(news.request)) mark.mapped()(news);
+      break;
+  }
+}
+
+void Service::Mark(std::function<void(const JournalNews&)> told) {
+  CheckNotRestoring();
+  marks_.emplace(Post({.kind = ControlRequest::Kind::kMark}), std::move(told));
+}
+
+void Service::RecordIncident(const Event& event) {
+  IncidentSource source;
+  source.event = event;
+  source.frames = history_.Recent();
+  source.events = history_.Events();
+  source.job = newest_.frame.job;
+  source.parameters = accepted.parameters;
+  source.object = accepted.object->name;
+  source.dt = dt();
+  const auto incident = std::make_shared<const Incident>(MakeIncident(source, hand()));
+  const auto base = config_.output_dir / IncidentName(event.tick);
+  incident_ = incident;
+  incident_summary_ = {{"tick", event.tick},
+                       {"time_s", incident->time_s},
+                       {"seed", newest_.frame.seed},
+                       {"cause", incident->cause},
+                       {"record", base.string() + ".json"},
+                       {"picture", base.string() + ".png"}};
+  if (incident->job.id != 0) job_incidents_[incident->job.id] = incident_summary_;
+  if (job_incidents_.size() > JobTable::kKept) job_incidents_.erase(job_incidents_.begin());
+  spdlog::warn("{}", incident->cause);
+  try {
+    WriteOutput(base.string() + ".json",
+                [&](const std::string& draft) { WriteIncident(*incident, hand(), draft); });
+  } catch (const std::exception& e) {
+    spdlog::error("no record of the incident: {}", e.what());
+  }
+  DrawIncidentLater(incident);
+}
+
+void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident) {
+  const auto draw = [incident, hand = hand(), directory = config_.output_dir] {
+    const auto path = directory / (IncidentName(incident->event.tick) + ".png");
+    try {
+      WriteOutput(path, [&](const std::string& draft) { DrawIncident(*incident, hand, 0, draft); });
+    } catch (const std::exception& e) {
+      spdlog::error("no picture of the incident: {}", e.what());
+    }
+  };
+  if (host_->Background(draw, [] {})) return;
+  host_->After(kRetry_s, [this, incident] { DrawIncidentLater(incident); });
+}
+
+Json Service::JobAnswer(const JobRecord& job) const {
+  Json json = JobJson(job, hand());
+  const auto incident = job_incidents_.find(job.id);
+  json["incident"] = incident == job_incidents_.end() ? Json() : incident->second;
+  return json;
 }
 
 Json Service::Topic(const std::string& topic) {
@@ -115,6 +207,13 @@ void Service::CheckNotFaulted() const {
                        "regrasp reset");
 }
 
+void Service::CheckNotRestoring() const {
+  if (const JobRecord* job = jobs_.Restoring())
+    throw RpcException(ErrorCode::kBusy,
+                       fmt::format("a checkpoint is being restored (job {})", job->id),
+                       fmt::format("regrasp job wait {}", job->id));
+}
+
 void Service::CheckAllowed(CommandType type) const {
   if (type != CommandType::kReset) CheckNotFaulted();
   const Verdict verdict = Check(type, newest_.frame.state, jobs_.Unfinished() != nullptr);
@@ -135,6 +234,7 @@ std::uint64_t Service::Post(ControlRequest request) {
 }
 
 std::uint64_t Service::PostCommand(Command command) {
+  CheckNotRestoring();
   if (control_.backlog() >= kMaxBacklog)
     throw RpcException(ErrorCode::kBusy,
                        fmt::format("{} commands are waiting for the next tick", kMaxBacklog),

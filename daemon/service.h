@@ -7,6 +7,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@
 #include "core/session/parameters.h"
 #include "daemon/control_loop.h"
 #include "daemon/history.h"
+#include "daemon/incident.h"
 #include "daemon/jobs.h"
 #include "daemon/json.h"
 #include "daemon/params.h"
+#include "daemon/recorder.h"
 #include "daemon/rpc.h"
 
 namespace regrasp {
@@ -80,6 +83,13 @@ class Service {
   /// called), events. Returns the new events. Call after ControlLoop::output() was notified.
   std::vector<Event> Drain();
 
+  /// The last drop or fault since the start; null when there was none.
+  const std::shared_ptr<const Incident>& incident() const { return incident_; }
+  /// Where its record is and what it says, for `status`; null when there was none.
+  const Json& incident_summary() const { return incident_summary_; }
+  /// The record of a job, with the incident that ended it.
+  Json JobAnswer(const JobRecord& job) const;
+
   /// The present value of a subscription topic other than events.
   Json Topic(const std::string& topic);
   /// Changes whenever a new frame has come in.
@@ -101,6 +111,15 @@ class Service {
   /// The names behind a dynamic enumeration, now.
   std::vector<std::string> Names(NameSource source) const;
 
+  /// The present run up to now: every command that was applied.
+  const Journal& journal() const { return journal_; }
+  std::uint64_t run() const { return run_; }  ///< its number
+  /// The run file that is being written, or null.
+  std::shared_ptr<Recorder> recorder;
+  /// Asks for the tick and the state hash of this moment, after every command accepted before;
+  /// `told` is called on the I/O thread when journal() is complete up to there.
+  void Mark(std::function<void(const JournalNews&)> told);
+
   /// Values as accepted, which the simulation may not have seen yet (it has after its next tick).
   struct Accepted {
     Parameters parameters;
@@ -113,6 +132,8 @@ class Service {
   /// Throws busy, bad state or simulation fault unless the command may be given now.
   void CheckAllowed(CommandType type) const;
   void CheckNotFaulted() const;
+  /// Throws busy while a checkpoint is being restored.
+  void CheckNotRestoring() const;
   /// Queues a request; throws busy when there is no room.
   std::uint64_t Post(ControlRequest request);
   /// The same for a command that takes effect at a tick; refuses to let too many pile up while
@@ -120,12 +141,23 @@ class Service {
   std::uint64_t PostCommand(Command command);
 
  private:
+  void TakeIn(const JournalNews& news);
+  /// Writes the record of what led to `event` at once and has its picture drawn.
+  void RecordIncident(const Event& event);
+  void DrawIncidentLater(std::shared_ptr<const Incident> incident);
+
   ServiceConfig config_;
   Host* host_;
   ControlLoop control_;
   JobTable jobs_;
+  Journal journal_;
+  std::uint64_t run_ = 0;
+  std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;
   History history_;
   std::deque<Event> events_;
+  std::shared_ptr<const Incident> incident_;
+  Json incident_summary_;
+  std::map<std::int64_t, Json> job_incidents_;  ///< summaries by job
   Published newest_;
   std::uint64_t frame_number_ = 0;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

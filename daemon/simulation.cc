@@ -134,6 +134,7 @@ Outcome Resume(Service& service, const Params&, Client&) {
 }
 
 Outcome Step(Service& service, const Params& params, Client&) {
+  service.CheckNotRestoring();
   service.CheckNotFaulted();
   if (!service.accepted.paused)
     throw RpcException(ErrorCode::kBadState, "the simulation is not paused", "regrasp pause");
@@ -152,6 +153,7 @@ Outcome Step(Service& service, const Params& params, Client&) {
 }
 
 Outcome Reset(Service& service, const Params& params, Client&) {
+  service.CheckNotRestoring();
   Command command = Of(CommandType::kReset);
   command.seed = static_cast<std::uint64_t>(
       params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));

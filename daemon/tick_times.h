@@ -7,8 +7,9 @@
 
 namespace regrasp {
 
-/// How long ticks take: the 99th percentile of the last kWindow. Written by the control thread,
-/// whose loop reads the clock (a tick itself never does); read by any. Allocates nothing.
+/// Times of ticks (how long, how late): the 99th percentile of the last kWindow. Written by the
+/// control thread, whose loop reads the clock (a tick itself never does); read by any. Allocates
+/// nothing.
 class TickTimes {
  public:
   static constexpr std::size_t kWindow = 1024;  ///< ticks: a second of real time

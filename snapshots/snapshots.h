@@ -10,6 +10,7 @@
 /// history), a size outside 400 x 300 .. 8000 x 8000 px, a suffix that is not listed, a missing
 /// font (package fonts-dejavu-core), a file that cannot be written.
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,5 +66,29 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
 /// exploration) is left out.
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
               const PlotOptions& options, const std::string& path);
+
+/// What the picture of a drop shows beside the frames.
+struct IncidentNote {
+  /// A finger that no longer touched the object at the end.
+  struct ContactEnd {
+    int finger = -1;
+    double time_s = 0;    ///< of its last touch
+    bool lifted = false;  ///< the gait had taken it off
+  };
+  std::int64_t tick = 0;
+  double time_s = 0;             ///< of the drop
+  std::string cause;             ///< the title
+  double margin_limit = 0;       ///< load margin that a finger must leave behind [N]
+  double drop_distance = 0;      ///< object error that counts as dropped [m]
+  std::vector<ContactEnd> ends;  ///< in order of time
+};
+
+/// The time before a drop: what the session and the gait did, which finger touched the object in
+/// which role, the noise-free normal force of every finger, the load margin rho as sensed and the
+/// object's distance from its reference. Time counts back from the drop. Pushes, changes of
+/// parameters and the first lost contact are labelled. `frames` end at the drop.
+void PlotIncident(std::span<const Frame> frames, std::span<const Event> events,
+                  const IncidentNote& note, const HandModel& hand, const PlotOptions& options,
+                  const std::string& path);
 
 }  // namespace regrasp

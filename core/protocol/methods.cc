@@ -12,11 +12,26 @@ constexpr std::array<std::string_view, 4> kCriteria = {"manipulability", "stabil
                                                        "combined"};
 constexpr std::array<std::string_view, 2> kEstimators = {"least_squares", "secant"};
 constexpr std::array<std::string_view, 5> kPresets = {"off", "fine", "paper", "coarse", "taxel"};
-constexpr std::array<std::string_view, 5> kPlots = {"comparison", "contacts", "gait", "quality",
-                                                    "scene"};
+constexpr std::array<std::string_view, 6> kPlots = {"comparison", "contacts", "gait",
+                                                    "incident",   "quality",  "scene"};
 constexpr std::array<std::string_view, 6> kTopics = {"contacts", "events", "joints",
                                                      "quality",  "status", "truth"};
 
+constexpr ParamSpec kCheckpointName = {
+    .name = "name",
+    .type = kString,
+    .sentence = "letters, digits, - _ . ; at most 64, no dot first",
+    .required = true};
+constexpr std::array kCheckpointSave = {kCheckpointName};
+constexpr std::array kCheckpointRestore = {
+    kCheckpointName,
+    ParamSpec{.name = "seed",
+              .type = kInteger,
+              .sentence = "branch: sensor noise and later random choices follow this seed",
+              .min = 0,
+              .max = kMaxSafeInteger,
+              .default_text = "go on identically"},
+};
 constexpr std::array kDescribe = {
     ParamSpec{.name = "method",
               .type = kString,
@@ -186,6 +201,19 @@ constexpr std::array kPush = {
               .max = 60,
               .default_text = "0.1"},
 };
+constexpr std::array kRecordStart = {
+    ParamSpec{.name = "file",
+              .type = kString,
+              .sentence = "file name (not a path), written in the daemon's output directory",
+              .default_text = "run-001.mcap, or the next number"},
+    ParamSpec{.name = "rate_hz",
+              .sentence = "samples per second of simulated time; commands, events and state hashes "
+                          "are always complete",
+              .unit = "Hz",
+              .min = 0.1,
+              .max = 100,
+              .default_text = "25"},
+};
 constexpr std::array kReset = {
     ParamSpec{.name = "seed",
               .type = kInteger,
@@ -261,9 +289,20 @@ constexpr std::array kUnsubscribe = {
 constexpr std::span<const ParamSpec> kNone = {};
 
 constexpr std::array kMethods = {
-    MethodSpec{"contacts", "contacts", "what the controller senses at each fingertip", kNone, false,
-               "tick, time_s, fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
-               "force_command_W_n}}; p_WC_m and normal_W are null without contact"},
+    MethodSpec{"checkpoint.list", "checkpoint list", "the checkpoints in the output directory",
+               kNone, false,
+               "checkpoints: [{name, tick, time_s, state, state_hash, seed, object, commands, "
+               "same_build}]"},
+    MethodSpec{"checkpoint.restore", "checkpoint restore",
+               "go on from a checkpoint: identically, or with another seed", kCheckpointRestore,
+               true, "job; continues: the job that goes on after it, or null; tick, state_hash"},
+    MethodSpec{"checkpoint.save", "checkpoint save", "keep this moment, to go on from it later",
+               kCheckpointSave, false, "name, tick, time_s, state, state_hash, commands, path"},
+    MethodSpec{
+        "contacts", "contacts", "what the controller senses at each fingertip", kNone, false,
+        "tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, "
+        "fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
+        "force_command_W_n}}; p_WC_m and normal_W are null without contact"},
     MethodSpec{"describe", "call describe",
                "every method with its parameters, types, units and ranges", kDescribe, false,
                "version, protocol, methods, errors"},
@@ -301,6 +340,13 @@ constexpr std::array kMethods = {
     MethodSpec{"quality", "quality", "quality of the grasp", kNone, false,
                "tick, time_s, criterion, stability, threshold, load_margin_n, measures, fingers: "
                "{NAME: {manipulability, load_margin_without_n, joint_limit_margin_rad}}"},
+    MethodSpec{"record.list", "record list", "the run files in the output directory", kNone, false,
+               "recordings: [{file, bytes, complete, recording}]"},
+    MethodSpec{"record.start", "record start",
+               "write the run into a file, from its beginning; it can be replayed", kRecordStart,
+               false, "file, path, rate_hz, tick, commands (so far)"},
+    MethodSpec{"record.stop", "record stop", "end the run file", kNone, false,
+               "file, path, messages, bytes, dropped"},
     MethodSpec{"release", "release", "open the hand", kNone, true, "job"},
     MethodSpec{"reset", "reset", "start a new run; parameters and noise levels stay", kReset, false,
                "seed, object"},
@@ -313,7 +359,10 @@ constexpr std::array kMethods = {
         "stopping, activated (true: the service manager starts another at the next connection)"},
     MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
                "version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, "
-               "speed, seed, hand, object, job, noise, clients, ..."},
+               "speed, tick_p99_s, seed, hand, object, job, gait: {active, phase, finger, "
+               "target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop: "
+               "tick, cause, record, "
+               "picture; or null), noise, clients, ..."},
     MethodSpec{"step", "step", "advance a paused simulation", kStep, true, "job"},
     MethodSpec{"stop", "stop", "end the current job and keep holding", kNone, false,
                "job (the one that ends), or null"},

@@ -63,18 +63,20 @@ Vector3d Tilted(const Vector3d& n, double a, double b) {
 
 }  // namespace
 
-Sensors::Sensors(const HandModel& hand, double dt, std::uint64_t seed)
-    : hand_(&hand),
-      dt_(dt),
-      position_stream_(seed, kPositionStream),
-      normal_stream_(seed, kNormalStream),
-      force_stream_(seed, kForceStream),
-      joint_stream_(seed, kJointStream),
-      pose_position_stream_(seed, kPosePositionStream),
-      pose_rotation_stream_(seed, kPoseRotationStream) {
+Sensors::Sensors(const HandModel& hand, double dt, std::uint64_t seed) : hand_(&hand), dt_(dt) {
+  Reseed(seed);
   for (int f = 0; f < hand.num_fingers(); ++f) tips_[f] = MakeTipAxes(hand, f);
   reading_.fingertips.resize(static_cast<std::size_t>(hand.num_fingers()));
   reading_.q = JointVector::Zero(hand.num_joints());
+}
+
+void Sensors::Reseed(std::uint64_t seed) {
+  position_stream_ = RandomStream(seed, kPositionStream);
+  normal_stream_ = RandomStream(seed, kNormalStream);
+  force_stream_ = RandomStream(seed, kForceStream);
+  joint_stream_ = RandomStream(seed, kJointStream);
+  pose_position_stream_ = RandomStream(seed, kPosePositionStream);
+  pose_rotation_stream_ = RandomStream(seed, kPoseRotationStream);
 }
 
 void Sensors::SetNoise(const NoiseLevels& levels) {

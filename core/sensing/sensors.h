@@ -33,6 +33,8 @@ class Sensors {
   /// Takes effect at the next sample. Changing the object's rate or delay empties the delay line.
   void SetNoise(const NoiseLevels& levels);
   const NoiseLevels& noise() const { return levels_; }
+  /// The noise of later samples follows `seed`; levels, delay line and held reading stay.
+  void Reseed(std::uint64_t seed);
 
   /// One reading per tick; `tick` never decreases. A fingertip is in contact when its tip link
   /// presses on the object with more than 0.01 N along the normal; with several contacts, the

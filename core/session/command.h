@@ -26,16 +26,19 @@ enum class CommandType : std::uint8_t {
   kParameter,
   kCancelJob,
   kReset,
+  kBranch,
 };
 
 struct Command {
   CommandType type = CommandType::kStop;
-  std::int64_t job = 0;  ///< id of the new job (grasp, release, explore, rotate), chosen by the
-                         ///< caller; or the job to cancel
-  int finger = -1;       ///< explore
+  std::int64_t job =
+      0;            ///< id of the new job (grasp, release, explore, rotate), chosen by the
+                    ///< caller; or the job to cancel; branch: new id of the running job, 0 = keep
+  int finger = -1;  ///< explore
   Criterion criterion = Criterion::kManipulability;
   Estimator estimator = Estimator::kLeastSquares;
-  std::uint64_t seed = 0;   ///< explore: direction of the start gradient; reset: the run
+  std::uint64_t seed = 0;   ///< explore: direction of the start gradient; reset: the run; branch
+  bool reseed = false;      ///< branch: the sensors' noise goes on from `seed`
   int max_cycles = 0;       ///< explore: 0 = parameter exploration.max_cycles
   bool continuous = false;  ///< rotate
   double angle_rad = 0;     ///< rotate, signed

@@ -14,6 +14,7 @@ Verdict Check(CommandType type, SessionState state, bool job_running) {
     case CommandType::kCancelJob:
     case CommandType::kNoise:
     case CommandType::kParameter:
+    case CommandType::kBranch:
       if (faulted) return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
       return {};
     case CommandType::kPush:
@@ -145,6 +146,9 @@ Verdict Session::Impl::Apply(const Command& command) {
     case CommandType::kParameter:
       SetParameter(command);
       break;
+    case CommandType::kBranch:
+      Branch(command);
+      break;
     case CommandType::kReset:
       if (command.object) {
         object = command.object;
@@ -169,6 +173,15 @@ void Session::Impl::SetParameter(const Command& command) {
   world->SetGravity(parameters.gravity_W);
   Emit(EventKind::kParameter, -1, command.value[0], "%s = %.6g", info.name.data(),
        command.value[0]);
+}
+
+void Session::Impl::Branch(const Command& command) {
+  if (command.job != 0 && job_running()) job.id = command.job;
+  if (!command.reseed) return;
+  seed = command.seed;
+  sensors->Reseed(seed);
+  Emit(EventKind::kNoise, -1, static_cast<double>(seed), "noise goes on from seed %llu",
+       static_cast<unsigned long long>(seed));
 }
 
 void Session::Impl::StopJob() {

@@ -10,7 +10,7 @@
 
 namespace regrasp {
 
-enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kStep };
+enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kStep, kRestore };
 enum class JobState : std::uint8_t { kQueued, kRunning, kDone, kFailed, kCancelled };
 /// Why an exploration ended.
 enum class ExploreReason : std::uint8_t {

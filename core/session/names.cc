@@ -30,6 +30,8 @@ std::string_view Name(JobMethod method) {
       return "rotate";
     case JobMethod::kStep:
       return "step";
+    case JobMethod::kRestore:
+      return "checkpoint.restore";
   }
   return "";
 }

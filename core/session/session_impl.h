@@ -48,6 +48,9 @@ struct Session::Impl {
   Verdict MayExplore(int finger);
   Verdict Apply(const Command& command);
   void SetParameter(const Command& command);
+  /// A run goes on from a checkpoint: its job gets a number of the present table, and with
+  /// `reseed` everything random that comes later follows the new seed.
+  void Branch(const Command& command);
   void StopJob();
   bool job_running() const { return job.id != 0 && job.state == JobState::kRunning; }
   template <typename... Args>

@@ -151,6 +151,9 @@ std::uint64_t Session::Impl::Hash() const {
   hasher.Add(explore_request.estimator);
   hasher.Add(explore_request.seed);
   hasher.Add(explore_request.max_cycles);
+  hasher.Add(gait.request().continuous);
+  hasher.Add(gait.request().speed_rad_s);
+  hasher.Add(gait.request().seed);
   Parameters given = parameters;
   for (const ParameterInfo& info : ParameterTable())
     for (int k = 0; k < info.size; ++k) hasher.Add(info.access(given)[k]);

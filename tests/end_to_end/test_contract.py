@@ -22,7 +22,7 @@ MAY_FAIL = {"explore": {1}, "rotate": {1}}
 UNITS = ("_m", "_rad", "_n", "_s", "_nm", "_hz", "_kg", "_mm", "_deg", "_bytes", "_m_s", "_rad_s", "_m_s2", "_n_s", "_1_m", "_fraction", "_wxyz", "_W", "_id", "_j")
 # Numbers without a unit, and why: counts, numbers of things, ratios, measures without dimension.
 PLAIN = re.compile(
-    r"(tick|ticks|seq|dropped|id|job|sub|seed|clients|backlog|protocol|pid|cycles?|turns|steps?|count|bytes|code|max_cycles|exit_code|frames?|number|runs?|"
+    r"(tick|ticks|seq|dropped|id|job|sub|seed|clients|backlog|protocol|pid|cycles?|turns|steps?|count|bytes|code|max_cycles|exit_code|frames?|number|runs?|commands|messages|segments|continues|"
     r"progress|real_time_factor|speed|friction|mu|phi\w*|manipulability|stability|threshold|epsilon|volume|isotropy|sqrt_det|min_singular_value|"
     r"value|min|max|default|normal\w*|\w+_tick|frames_dropped|\w+_cycles|regrasps|ticks_per_s|reload|rows?|columns?|\d+|force_closure|axis|gradient_norm\w*|size|\w+_frames)$")
 
@@ -128,7 +128,7 @@ class EveryCommand(DaemonCase):
 class Errors(DaemonCase):
     def test_errors_leave_stdout_alone(self):
         for code, words in [(2, ["explore", "elbow"]), (5, ["explore", "ring"]), (6, ["job", "show", "99"]), (8, ["call", "nonsense"]),
-                            (6, ["evaluate", "/nonexistent"]), (2, ["--frobnicate"])]:
+                            (6, ["evaluate", str(self.dir / "absent.json")]), (2, ["--frobnicate"])]:
             with self.subTest(words):
                 self.refused(code, *words)
                 done = self.expect(code, "--json", *words)

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import stat
 import subprocess
 import unittest
@@ -129,6 +130,29 @@ class Session(DaemonCase):
         self.expect(0, "param", "set", "object.friction", "0.05")
         job = self.regrasp("explore", "ring", "--wait")
         self.assertIn(job.returncode, (1, 5), job.stdout + job.stderr)  # 5: it was lost before the job began
+
+    def test_a_drop_explains_itself(self):
+        self.refused(6, "plot", "incident")
+        self.expect(0, "grasp", "--wait")
+        self.assertNotIn("incident", self.expect(0, "status").stdout)
+        self.expect(0, "pause")
+        job = self.json("explore", "ring")["job"]
+        self.expect(0, "param", "set", "object.friction", "0.05")
+        self.expect(0, "step", "10000", "--wait")
+        record = self.json("status")["incident"]["record"]
+        (line,) = [line for line in self.expect(0, "status").stdout.splitlines() if line.startswith("incident")]
+        self.assertIn(record, line)
+        text = self.expect(0, "job", "show", job).stdout
+        self.assertIn(record, text)
+        self.assertIn("object.friction = 0.05", " ".join(text.split()))
+        with open(record, encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["job"]["id"], job)
+        (event,) = [event for event in self.json("events")["events"] if event["kind"] == "dropped"]
+        self.assertTrue(record.endswith("/" + event["incident"]))
+        file = self.dir / "why.png"
+        self.expect(0, "plot", "incident", "-o", file)
+        self.assertTrue(file.read_bytes().startswith(PNG))
+        self.assertEqual(file.read_bytes(), pathlib.Path(record).with_suffix(".png").read_bytes())
 
     def test_full_disk(self):
         with open("/dev/full", "w", encoding="utf-8") as full:

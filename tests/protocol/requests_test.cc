@@ -26,7 +26,7 @@ TEST_F(Requests, AnswerWithTheRightCode) {
       {"status", {}, 0},
       {"statu", {}, -32601},
       {"", {}, -32601},
-      {"record.start", {}, -32601},  // not in this version
+      {"record.pause", {}, -32601},  // no such method
       {"status", {{"x", 1}}, -32602},
       {"explore", {}, -32602},
       {"explore", {{"finger", "rign"}}, -32602},

@@ -47,21 +47,36 @@ class Snapshots : public ::testing::Test {
   fs::path folder_;
 };
 
+/// A drop at the end of the history; the last finger let go half a second before.
+IncidentNote NoteOf(std::span<const Frame> history) {
+  IncidentNote note;
+  if (!history.empty()) note.tick = history.back().tick;
+  note.time_s = 1e-3 * static_cast<double>(note.tick);
+  note.cause = "Dropped while holding: a push, then three lost its contact first.";
+  note.margin_limit = 0.1;
+  note.drop_distance = 0.03;
+  note.ends = {{2, note.time_s - 0.5, false}};
+  return note;
+}
+
 /// Draws one kind of picture of a history.
 using Plot = std::function<void(std::span<const Frame>, const PlotOptions&, const std::string&)>;
 
 std::vector<std::pair<std::string, Plot>> AllPlots(const HandModel& hand, const ObjectModel& object,
                                                    std::span<const Event> events) {
-  return {{"quality",
-           [&hand, events](auto h, auto& o, auto& p) { PlotQuality(h, events, hand, o, p); }},
-          {"comparison",
-           [&hand](auto h, auto& o, auto& p) {
-             const std::array<LabelledRun, 2> runs = {LabelledRun{"a", h}, LabelledRun{"b", h}};
-             PlotQualityComparison(runs, hand, o, p);
-           }},
-          {"contacts", [&](auto h, auto& o, auto& p) { PlotContacts(h, hand, object, o, p); }},
-          {"gait", [&hand, events](auto h, auto& o, auto& p) { PlotGait(h, events, hand, o, p); }},
-          {"scene", [&](auto h, auto& o, auto& p) { PlotScene(h.back(), hand, object, o, p); }}};
+  return {
+      {"quality",
+       [&hand, events](auto h, auto& o, auto& p) { PlotQuality(h, events, hand, o, p); }},
+      {"comparison",
+       [&hand](auto h, auto& o, auto& p) {
+         const std::array<LabelledRun, 2> runs = {LabelledRun{"a", h}, LabelledRun{"b", h}};
+         PlotQualityComparison(runs, hand, o, p);
+       }},
+      {"contacts", [&](auto h, auto& o, auto& p) { PlotContacts(h, hand, object, o, p); }},
+      {"gait", [&hand, events](auto h, auto& o, auto& p) { PlotGait(h, events, hand, o, p); }},
+      {"incident", [&hand, events](auto h, auto& o,
+                                   auto& p) { PlotIncident(h, events, NoteOf(h), hand, o, p); }},
+      {"scene", [&](auto h, auto& o, auto& p) { PlotScene(h.back(), hand, object, o, p); }}};
 }
 
 std::string ErrorOf(const std::function<void()>& action) {
@@ -236,6 +251,31 @@ TEST_F(Snapshots, QualityWithoutExplorationHasNoBoldCurve) {
   EXPECT_LT(Count(cv::imread(File("q.png")), LookOfFinger(kSyntheticExplorer).colour,
                   {152, 206, 1150, 290}),
             200);
+}
+
+TEST_F(Snapshots, IncidentShowsTheForceOfEveryFingerAndWhoLetGo) {
+  std::vector<Frame> run = run_;
+  for (Frame& frame : run)
+    for (int f = 0; f < 3; ++f)
+      frame.fingers[f].true_force_W = -(0.3 + 0.4 * f) * frame.fingers[f].true_normal_W;
+  PlotOptions options;
+  options.last_s = 2;
+  PlotIncident(run, {}, NoteOf(run), hand_, options, File("i.png"));
+  const cv::Mat picture = cv::imread(File("i.png"));
+  // Below the strips, left of the legend.
+  const cv::Rect panels(152, 340, 1196, 570);
+  // A curve across 1200 px, 3 px wide, of which at least 1 px is pure; letters cover a part of it.
+  for (int f = 0; f < 3; ++f) EXPECT_GT(Count(picture, LookOfFinger(f).colour, panels), 800) << f;
+  EXPECT_GT(Count(picture, Tint(kVermillion, 0.72), panels), 1000);  // below the margin's limit
+
+  IncidentNote nobody = NoteOf(run);
+  nobody.ends.clear();
+  PlotIncident(run, {}, nobody, hand_, options, File("n.png"));
+  const auto vermillion = [&](const std::string& name) {
+    return Count(cv::imread(File(name)), LookOfFinger(2).colour, panels);
+  };
+  // The dashed line down the panels: 500 px, 60 % of it drawn, at least 1 px pure.
+  EXPECT_GT(vermillion("i.png"), vermillion("n.png") + 100);
 }
 
 TEST_F(Snapshots, ComparisonShowsBothRunsAndTheThreshold) {

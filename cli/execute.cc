@@ -1,0 +1,48 @@
+#include "cli/execute.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "cli/context.h"
+
+namespace regrasp::cli {
+
+ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& defaults,
+                 const std::string& where) {
+  const char* no_color = std::getenv("NO_COLOR");
+  const bool color = ::isatty(STDERR_FILENO) == 1 && (no_color == nullptr || *no_color == '\0') &&
+                     defaults.color != ColorMode::kNever;
+  std::vector<const char*> argv = {"regrasp"};
+  for (const auto& word : words) argv.push_back(word.c_str());
+  const int argc = static_cast<int>(argv.size());
+  const auto fail = [&](const CliError& error) {
+    const CliError placed(error.code, where + error.what(), error.hint, error.rpc_code);
+    PrintError(placed, defaults.json || WantsJson(argc, argv.data()), color);
+    return error.code;
+  };
+  try {
+    GlobalOptions options = defaults;
+    const Invocation invocation = Parse(argc, argv.data(), &options);
+    Context context(options);
+    ExitCode code = kOk;
+    try {
+      code = invocation.command->run(context, invocation);
+    } catch (CliError& error) {
+      context.out().Flush();  // what was answered before the failure
+      if (error.code == kUsage && error.hint.empty()) {
+        error.hint = "regrasp help " + invocation.command->words;
+      }
+      throw;
+    }
+    context.out().Flush();
+    return code;
+  } catch (const CliError& error) {
+    return fail(error);
+  } catch (const std::exception& error) {
+    return fail(
+        CliError(kProtocol, std::string("unexpected answer: ") + error.what(), "regrasp doctor"));
+  }
+}
+
+}  // namespace regrasp::cli

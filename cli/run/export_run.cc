@@ -1,0 +1,239 @@
+#include "cli/run/export_run.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "cli/run/npz.h"
+#include "core/mcap/mcap_reader.h"
+
+namespace regrasp::run {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Units by the end of a field's name; longer ends first.
+constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+    {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_m", "1/m"}, {"_nm", "N m"},
+    {"_rad", "rad"},     {"_n", "N"},     {"_m", "m"},     {"_s", "s"}};
+
+std::string_view UnitOf(std::string_view field) {
+  for (const auto& [end, unit] : kUnits)
+    if (field.ends_with(end)) return unit;
+  return "";
+}
+
+struct Topic {
+  std::vector<Json> rows;
+};
+
+struct Run {
+  std::map<std::string, Topic> topics;
+  std::vector<std::string> joints, fingers;
+  McapSummary summary;
+};
+
+Run Read(const std::string& path) {
+  Run run;
+  run.summary = ReadMcap(path, [&](const McapMessage& message) {
+    Json json = Json::parse(message.data);
+    if (message.topic == "run") {  // models: only the names of joints and fingers are needed here
+      const Json& hand = json.at("model").at("hand");
+      run.joints.clear();
+      run.fingers.clear();
+      for (const Json& joint : hand.at("joints")) run.joints.push_back(joint.at("name"));
+      for (const Json& finger : hand.at("fingers")) run.fingers.push_back(finger.at("name"));
+      json.erase("model");
+    }
+    run.topics[std::string(message.topic)].rows.push_back(std::move(json));
+  });
+  return run;
+}
+
+/// What item `i` of a list of `size` is called.
+std::string ItemName(const Run& run, std::size_t i, std::size_t size) {
+  if (size == run.joints.size()) return run.joints[i];
+  if (size == run.fingers.size()) return run.fingers[i];
+  if (size == 3) return std::string(1, "xyz"[i]);
+  if (size == 4) return std::string(1, "wxyz"[i]);
+  return std::to_string(i);
+}
+
+/// {"a":[1,2]} -> {"a.x", 1}, {"a.y", 2}.
+void Flatten(const Run& run, const std::string& name, const Json& value,
+             std::vector<std::pair<std::string, Json>>* cells) {
+  if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i)
+      Flatten(run, name + "." + ItemName(run, i, value.size()), value[i], cells);
+  } else if (value.is_object()) {
+    for (const auto& [key, item] : value.items()) Flatten(run, name + "." + key, item, cells);
+  } else {
+    cells->emplace_back(name, value);
+  }
+}
+
+std::string Cell(const Json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string& text = value.get_ref<const std::string&>();
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+void WriteCsv(const Run& run, const Topic& topic, const fs::path& path) {
+  std::vector<std::vector<std::pair<std::string, Json>>> rows;
+  std::vector<std::string> columns;
+  std::map<std::string, std::size_t> place;
+  std::vector<std::string_view> units;
+  for (const Json& row : topic.rows) {
+    auto& cells = rows.emplace_back();
+    for (const auto& [field, value] : row.items()) {
+      const std::size_t before = cells.size();
+      Flatten(run, field, value, &cells);
+      for (std::size_t i = before; i < cells.size(); ++i) {
+        if (!place.emplace(cells[i].first, columns.size()).second) continue;
+        columns.push_back(cells[i].first);
+        const std::string& name = cells[i].first;  // of noise.position_m the last part tells
+        units.push_back(UnitOf(value.is_object() ? name : field));
+      }
+    }
+  }
+  std::ofstream out(path, std::ios::binary);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    out << (i ? "," : "") << Cell(columns[i]);
+    if (!units[i].empty()) out << " [" << units[i] << "]";
+  }
+  out << "\n";
+  std::vector<std::string> line;
+  for (const auto& cells : rows) {
+    line.assign(columns.size(), "");
+    for (const auto& [name, value] : cells) line[place.at(name)] = Cell(value);
+    for (std::size_t i = 0; i < line.size(); ++i) out << (i ? "," : "") << line[i];
+    out << "\n";
+  }
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + path.string());
+}
+
+std::vector<std::size_t> ShapeOf(const Json& value) {
+  std::vector<std::size_t> shape;
+  for (const Json* v = &value; v->is_array(); v = &(*v)[0]) {
+    shape.push_back(v->size());
+    if (v->empty()) break;
+  }
+  return shape;
+}
+
+bool AllOf(const Json& value, bool (Json::*kind)() const noexcept) {
+  if (!value.is_array()) return (value.*kind)();
+  for (const Json& item : value)
+    if (!AllOf(item, kind)) return false;
+  return true;
+}
+
+void Numbers(const Json& value, std::vector<double>* out) {
+  if (!value.is_array()) return out->push_back(value.get<double>());
+  for (const Json& item : value) Numbers(item, out);
+}
+
+void Bools(const Json& value, std::string* out) {
+  if (!value.is_array()) return out->push_back(value.get<bool>() ? '\1' : '\0');
+  for (const Json& item : value) Bools(item, out);
+}
+
+/// One field of every row: numbers and truth values as such, everything else as text.
+void AddField(const Topic& topic, const std::string& name, const std::string& field, Npz* npz) {
+  const std::vector<std::size_t> inner = ShapeOf(topic.rows.front().at(field));
+  bool numbers = true, bools = true;
+  for (const Json& row : topic.rows) {
+    const auto found = row.find(field);
+    const bool same = found != row.end() && ShapeOf(*found) == inner;
+    numbers = numbers && same && AllOf(*found, &Json::is_number);
+    bools = bools && same && AllOf(*found, &Json::is_boolean);
+  }
+  std::vector<std::size_t> shape = {topic.rows.size()};
+  if (numbers || bools) shape.insert(shape.end(), inner.begin(), inner.end());
+  if (numbers) {
+    std::vector<double> values;
+    for (const Json& row : topic.rows) Numbers(row.at(field), &values);
+    npz->Add(name, shape, values);
+  } else if (bools) {
+    std::string values;
+    for (const Json& row : topic.rows) Bools(row.at(field), &values);
+    npz->AddBools(name, shape, values);
+  } else {
+    std::vector<std::string> values;
+    for (const Json& row : topic.rows) {
+      const auto found = row.find(field);
+      values.push_back(found == row.end()   ? ""
+                       : found->is_string() ? found->get<std::string>()
+                                            : found->dump());
+    }
+    npz->AddText(name, values);
+  }
+}
+
+void WriteNpz(const Run& run, const std::string& out) {
+  Npz npz(out);
+  std::vector<std::string> units;
+  for (const auto& [name, topic] : run.topics) {
+    std::vector<std::string> fields;
+    for (const Json& row : topic.rows)
+      for (const auto& [field, value] : row.items())
+        if (std::find(fields.begin(), fields.end(), field) == fields.end()) fields.push_back(field);
+    for (const std::string& field : fields) {
+      Topic with;  // commands differ in their fields
+      for (const Json& row : topic.rows)
+        with.rows.push_back(row.contains(field) ? row : Json{{field, ""}});
+      AddField(with, name + "." + field, field, &npz);
+      if (const auto unit = UnitOf(field); !unit.empty())
+        units.push_back(fmt::format("{}.{} [{}]", name, field, unit));
+    }
+  }
+  npz.AddText("units", units);
+  npz.AddText("joint_names", run.joints);
+  npz.AddText("finger_names", run.fingers);
+  npz.Finish();
+}
+
+ExportResult WriteMcap(const std::string& path, const std::string& out) {
+  McapWriter writer(out);
+  // Channels stand before the first message: two passes.
+  std::map<std::string, std::string> schemas;
+  std::vector<std::string> order;
+  const McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
+    if (schemas.emplace(message.topic, message.schema).second) order.emplace_back(message.topic);
+  });
+  std::map<std::string, std::uint16_t> channels;
+  for (const std::string& topic : order) channels[topic] = writer.AddChannel(topic, schemas[topic]);
+  ReadMcap(path, [&](const McapMessage& message) {
+    writer.Write(channels.at(std::string(message.topic)), message.time, message.data);
+  });
+  writer.Finish();
+  return {writer.messages(), 1, summary.complete};
+}
+
+}  // namespace
+
+ExportResult ExportRun(const std::string& path, const std::string& format, const std::string& out) {
+  if (fs::exists(out)) throw std::runtime_error(out + " exists; give another name with -o");
+  if (format == "mcap") return WriteMcap(path, out);
+  const Run run = Read(path);
+  if (format == "npz") {
+    WriteNpz(run, out);
+    return {run.summary.messages, 1, run.summary.complete};
+  }
+  fs::create_directories(out);
+  for (const auto& [name, topic] : run.topics)
+    WriteCsv(run, topic, fs::path(out) / (name + ".csv"));
+  return {run.summary.messages, run.topics.size(), run.summary.complete};
+}
+
+}  // namespace regrasp::run

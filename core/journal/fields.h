@@ -1,0 +1,129 @@
+#pragma once
+
+/// Both directions of JSON from one list of fields: `Fields(archive, value)` names every member
+/// once; Save and Load walk the same list. Numbers keep every bit.
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/common/frames.h"
+#include "core/common/limits.h"
+#include "core/journal/journal.h"
+
+namespace regrasp::fields {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json ToJson(const T& value);
+template <typename T>
+void FromJson(const Json& json, T* value);
+
+struct Save {
+  Json json = Json::object();
+  template <typename T>
+  void operator()(const char* key, const T& value) {
+    json[key] = ToJson(value);
+  }
+};
+
+struct Load {
+  const Json& json;
+  template <typename T>
+  void operator()(const char* key, T& value) {
+    const auto found = json.find(key);
+    if (found == json.end()) throw JournalError(std::string(key) + " is missing");
+    try {
+      FromJson(*found, &value);
+    } catch (const nlohmann::json::exception&) {
+      throw JournalError(std::string(key) + " is of another kind than expected");
+    }
+  }
+};
+
+// How single values look.
+template <typename T>
+concept Plain = std::is_arithmetic_v<T> || std::is_same_v<T, std::string>;
+template <typename T>
+concept Enumeration = std::is_enum_v<T>;
+template <typename T>
+concept Matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
+
+template <typename T>
+struct Value {  // a structure
+  static Json To(const T& value) {
+    Save save;
+    Fields(save, const_cast<T&>(value));  // Save only reads
+    return std::move(save.json);
+  }
+  static void From(const Json& json, T* value) {
+    Load load{json};
+    Fields(load, *value);
+  }
+};
+template <Plain T>
+struct Value<T> {
+  static Json To(const T& value) { return value; }
+  static void From(const Json& json, T* value) { *value = json.get<T>(); }
+};
+template <Enumeration T>
+struct Value<T> {
+  static Json To(const T& value) { return static_cast<int>(value); }
+  static void From(const Json& json, T* value) { *value = static_cast<T>(json.get<int>()); }
+};
+template <Matrix T>
+struct Value<T> {  // row by row; a vector of free length takes the length it finds
+  static Json To(const T& value) {
+    Json json = Json::array();
+    for (Eigen::Index i = 0; i < value.rows(); ++i)
+      for (Eigen::Index j = 0; j < value.cols(); ++j) json.push_back(value(i, j));
+    return json;
+  }
+  static void From(const Json& json, T* value) {
+    const auto size = static_cast<Eigen::Index>(json.size());
+    if constexpr (T::RowsAtCompileTime == Eigen::Dynamic) {
+      if (size > T::MaxRowsAtCompileTime) throw JournalError("a vector has too many numbers");
+      value->resize(size);
+    }
+    if (size != value->size()) throw JournalError("a vector has the wrong number of numbers");
+    for (Eigen::Index i = 0; i < size; ++i)
+      (*value)(i / value->cols(), i % value->cols()) =
+          json[static_cast<std::size_t>(i)].template get<typename T::Scalar>();
+  }
+};
+template <>
+struct Value<Isometry3d> {  // the upper three rows
+  static Json To(const Isometry3d& X) {
+    return Value<Eigen::Matrix<double, 3, 4>>::To(X.matrix().topRows<3>());
+  }
+  static void From(const Json& json, Isometry3d* X) {
+    Eigen::Matrix<double, 3, 4> rows;
+    Value<Eigen::Matrix<double, 3, 4>>::From(json, &rows);
+    X->setIdentity();
+    X->matrix().topRows<3>() = rows;
+  }
+};
+template <typename T>
+struct Value<std::vector<T>> {
+  static Json To(const std::vector<T>& values) {
+    Json json = Json::array();
+    for (const T& value : values) json.push_back(ToJson(value));
+    return json;
+  }
+  static void From(const Json& json, std::vector<T>* values) {
+    values->clear();
+    for (const Json& item : json) FromJson(item, &values->emplace_back());
+  }
+};
+
+template <typename T>
+Json ToJson(const T& value) {
+  return Value<T>::To(value);
+}
+template <typename T>
+void FromJson(const Json& json, T* value) {
+  Value<T>::From(json, value);
+}
+
+}  // namespace regrasp::fields

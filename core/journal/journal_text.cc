@@ -1,0 +1,249 @@
+#include "core/journal/journal_text.h"
+
+#include <array>
+#include <charconv>
+
+#include "core/journal/model_fields.h"
+
+namespace regrasp {
+namespace {
+
+using fields::Json;
+using fields::Load;
+using fields::Save;
+
+constexpr const char* kRunFormat = "regrasp-run/1";
+constexpr const char* kCheckpointFormat = "regrasp-checkpoint/1";
+
+struct MethodName {
+  CommandType type;
+  std::string_view name;
+};
+// As on the wire; a branch is what a restored checkpoint begins with.
+constexpr std::array kMethods = {
+    MethodName{CommandType::kGrasp, "grasp"},
+    MethodName{CommandType::kRelease, "release"},
+    MethodName{CommandType::kExplore, "explore"},
+    MethodName{CommandType::kRotate, "rotate"},
+    MethodName{CommandType::kStop, "stop"},
+    MethodName{CommandType::kNoise, "noise.set"},
+    MethodName{CommandType::kPush, "push"},
+    MethodName{CommandType::kParameter, "param.set"},
+    MethodName{CommandType::kCancelJob, "job.cancel"},
+    MethodName{CommandType::kBranch, "branch"},
+};
+
+Json Parse(std::string_view text) {
+  try {
+    return Json::parse(text);
+  } catch (const nlohmann::json::exception& e) {
+    throw JournalError(std::string("not JSON: ") + e.what());
+  }
+}
+
+/// What each command carries. `finger` and `parameter` go by name.
+template <typename A>
+void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter) {
+  switch (c.type) {
+    case CommandType::kGrasp:
+    case CommandType::kRelease:
+    case CommandType::kCancelJob:
+      a("job", c.job);
+      break;
+    case CommandType::kExplore:
+      a("job", c.job);
+      a("finger", finger);
+      a("criterion", c.criterion);
+      a("estimator", c.estimator);
+      a("seed", c.seed);
+      a("max_cycles", c.max_cycles);
+      break;
+    case CommandType::kRotate:
+      a("job", c.job);
+      a("continuous", c.continuous);
+      a("angle_rad", c.angle_rad);
+      a("axis_W", c.axis_W);
+      a("speed_rad_s", c.speed_rad_s);
+      break;
+    case CommandType::kNoise:
+      a("noise", c.noise);
+      break;
+    case CommandType::kPush:
+      a("force_W_n", c.force_W);
+      a("duration_s", c.duration_s);
+      break;
+    case CommandType::kParameter:
+      a("name", parameter);
+      a("value", c.value);
+      break;
+    case CommandType::kBranch:
+      a("job", c.job);
+      a("reseed", c.reseed);
+      a("seed", c.seed);
+      break;
+    case CommandType::kStop:
+    case CommandType::kReset:
+      break;
+  }
+}
+
+void CheckFormat(const Json& json, const char* expected) {
+  std::string format;
+  Load{json}("format", format);
+  if (format != expected)
+    throw JournalError("format is '" + format + "', this build reads '" + expected + "'");
+}
+
+}  // namespace
+
+std::string HashText(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+std::uint64_t ParseHash(const std::string& text) {
+  std::uint64_t hash = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, hash, 16);
+  if (error != std::errc() || rest != end || text.size() != 16)
+    throw JournalError("'" + text.substr(0, 32) + "' is no state hash");
+  return hash;
+}
+
+std::string ConfigText(const SessionConfig& config, int segment) {
+  Save save;
+  save("format", std::string(kRunFormat));
+  save("build", std::string(BuildIdentity()));
+  save("segment", segment);
+  save("hand_name", config.model.hand.name);
+  save("object_name", config.model.object.name);
+  save("seed", config.seed);
+  save("noise", config.noise);
+  save("parameters", config.parameters);
+  save("world", config.world);
+  save("model", config.model);
+  return save.json.dump();
+}
+
+ConfigRead ParseConfig(std::string_view text) {
+  const Json json = Parse(text);
+  CheckFormat(json, kRunFormat);
+  ConfigRead read;
+  Load load{json};
+  load("build", read.build);
+  load("segment", read.segment);
+  load("seed", read.config.seed);
+  load("noise", read.config.noise);
+  load("parameters", read.config.parameters);
+  load("world", read.config.world);
+  load("model", read.config.model);
+  return read;
+}
+
+std::string EntryText(const JournalEntry& entry, const SessionConfig& config, int segment,
+                      std::size_t seq) {
+  Command command = entry.command;
+  std::string finger, parameter;
+  if (command.finger >= 0 && command.finger < config.model.hand.num_fingers())
+    finger = config.model.hand.fingers[static_cast<std::size_t>(command.finger)].name;
+  if (command.parameter >= 0)
+    parameter = ParameterTable()[static_cast<std::size_t>(command.parameter)].name;
+  Save save;
+  save("segment", segment);
+  save("seq", seq);
+  save("tick", entry.tick);
+  save("t_s", static_cast<double>(entry.tick) * config.world.dt);
+  for (const MethodName& method : kMethods)
+    if (method.type == command.type) save("method", std::string(method.name));
+  CommandFields(save, command, finger, parameter);
+  save("state_hash", HashText(entry.state_hash));
+  return save.json.dump();
+}
+
+EntryRead ParseEntry(std::string_view text, const SessionConfig& config) {
+  const Json json = Parse(text);
+  EntryRead read;
+  std::string method, finger, parameter, hash;
+  Load load{json};
+  load("segment", read.segment);
+  load("seq", read.seq);
+  load("tick", read.entry.tick);
+  load("method", method);
+  load("state_hash", hash);
+  read.entry.state_hash = ParseHash(hash);
+  Command& command = read.entry.command;
+  const auto known = std::find_if(kMethods.begin(), kMethods.end(),
+                                  [&](const MethodName& m) { return m.name == method; });
+  if (known == kMethods.end()) throw JournalError("unknown method '" + method + "'");
+  command.type = known->type;
+  CommandFields(load, command, finger, parameter);
+  if (command.type == CommandType::kExplore) command.finger = config.model.hand.FindFinger(finger);
+  if (command.type == CommandType::kParameter) {
+    command.parameter = FindParameter(parameter);
+    if (command.parameter < 0) throw JournalError("unknown parameter '" + parameter + "'");
+  }
+  return read;
+}
+
+std::string HandText(const HandModel& hand) { return fields::ToJson(hand).dump(); }
+
+std::string CheckpointText(const Checkpoint& checkpoint) {
+  const SessionConfig& config = checkpoint.journal.config;
+  Save head;
+  head("format", std::string(kCheckpointFormat));
+  head("name", checkpoint.name);
+  head("tick", checkpoint.tick);
+  head("time_s", static_cast<double>(checkpoint.tick) * config.world.dt);
+  head("state_hash", HashText(checkpoint.state_hash));
+  head("state", checkpoint.state);
+  head("build", checkpoint.build);
+  head("seed", config.seed);
+  head("object", config.model.object.name);
+  head("commands", checkpoint.journal.entries.size());
+  head("job", checkpoint.job.id);
+  head("job_method", checkpoint.job.method);
+  std::string text = head.json.dump() + "\n" + ConfigText(config, 0) + "\n";
+  for (std::size_t i = 0; i < checkpoint.journal.entries.size(); ++i)
+    text += EntryText(checkpoint.journal.entries[i], config, 0, i) + "\n";
+  return text;
+}
+
+Checkpoint ParseCheckpointHead(std::string_view line) {
+  const Json json = Parse(line);
+  CheckFormat(json, kCheckpointFormat);
+  Checkpoint checkpoint;
+  std::string hash;
+  Load load{json};
+  load("name", checkpoint.name);
+  load("tick", checkpoint.tick);
+  load("state_hash", hash);
+  load("state", checkpoint.state);
+  load("build", checkpoint.build);
+  load("seed", checkpoint.journal.config.seed);
+  load("object", checkpoint.journal.config.model.object.name);
+  load("job", checkpoint.job.id);
+  load("job_method", checkpoint.job.method);
+  std::size_t commands = 0;
+  load("commands", commands);
+  checkpoint.journal.entries.resize(commands);
+  checkpoint.state_hash = ParseHash(hash);
+  return checkpoint;
+}
+
+Checkpoint ParseCheckpoint(std::string_view text) {
+  const auto next_line = [&text] {
+    const auto end = text.find('\n');
+    if (end == std::string_view::npos) throw JournalError("the file ends too early");
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    return line;
+  };
+  Checkpoint checkpoint = ParseCheckpointHead(next_line());
+  checkpoint.journal.config = ParseConfig(next_line()).config;
+  for (JournalEntry& entry : checkpoint.journal.entries)
+    entry = ParseEntry(next_line(), checkpoint.journal.config).entry;
+  return checkpoint;
+}
+
+}  // namespace regrasp

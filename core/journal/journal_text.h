@@ -1,0 +1,45 @@
+#pragma once
+
+/// Journals as JSON text. Every number keeps its bits; models are inside, so that a run can be
+/// repeated without the files it was made from.
+
+#include <string>
+#include <string_view>
+
+#include "core/journal/journal.h"
+
+namespace regrasp {
+
+/// The configuration of a run: {format, build, segment, hand, object, seed, noise, parameters,
+/// world, model}. One line.
+std::string ConfigText(const SessionConfig& config, int segment);
+struct ConfigRead {
+  SessionConfig config;
+  std::string build;
+  int segment = 0;
+};
+/// Throws JournalError that names the field.
+ConfigRead ParseConfig(std::string_view text);
+
+/// A command: {segment, seq, tick, t_s, method, ..., state_hash}. `seq` counts the commands of the
+/// run from 0.
+std::string EntryText(const JournalEntry& entry, const SessionConfig& config, int segment,
+                      std::size_t seq);
+struct EntryRead {
+  JournalEntry entry;
+  int segment = 0;
+  std::size_t seq = 0;
+};
+EntryRead ParseEntry(std::string_view text, const SessionConfig& config);
+
+/// The model of the hand as text: two hands are the same when these are.
+std::string HandText(const HandModel& hand);
+
+/// A checkpoint as JSON lines: what it is, the configuration, the commands.
+std::string CheckpointText(const Checkpoint& checkpoint);
+/// Throws JournalError.
+Checkpoint ParseCheckpoint(std::string_view text);
+/// Only what the first line tells: everything but the journal.
+Checkpoint ParseCheckpointHead(std::string_view line);
+
+}  // namespace regrasp

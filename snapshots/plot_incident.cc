@@ -1,0 +1,298 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "snapshots/axes.h"
+#include "snapshots/measures.h"
+#include "snapshots/snapshots.h"
+#include "snapshots/timeline.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr int kLabelRows = 3;
+
+/// What a finger does, for its strip.
+enum class Activity { kHolds, kExplores, kMoves, kInTheAir, kNoContact };
+
+int ActivityOf(const Frame& frame, int finger) {
+  if (static_cast<std::size_t>(finger) >= frame.fingers.size()) return -1;
+  const FingerFrame& f = frame.fingers[finger];
+  Activity activity = Activity::kHolds;
+  if (!f.true_contact)
+    activity = frame.gait.active && frame.gait.finger == finger ? Activity::kInTheAir
+                                                                : Activity::kNoContact;
+  else if (f.role == FingerRole::kExplore)
+    activity = Activity::kExplores;
+  else if (f.role == FingerRole::kMove)
+    activity = Activity::kMoves;
+  return static_cast<int>(activity);
+}
+
+BandLook LookOfActivity(int finger, int value) {
+  const Colour colour = LookOfFinger(finger).colour;
+  switch (static_cast<Activity>(value)) {
+    case Activity::kHolds:
+      return {"holds", Tint(colour, 0.5)};
+    case Activity::kExplores:
+      return {"explores", Tint(colour, 0.1)};
+    case Activity::kMoves:
+      return {"moves", Tint(colour, 0.3)};
+    case Activity::kInTheAir:
+      return {"in the air", Tint(colour, 0.86)};
+    case Activity::kNoContact:
+      return {"no contact", kWhite};
+  }
+  return {"", kWhite};
+}
+
+/// The gait strip: the finger that regrasps, kTurning otherwise, -1 without a gait.
+constexpr int kTurning = 100;
+
+int GaitStateOf(const Frame& frame) {
+  if (!frame.gait.active) return -1;
+  return frame.gait.finger >= 0 ? frame.gait.finger : kTurning;
+}
+
+/// A capital for each finger: the first letter of its name.
+std::string LetterOf(const HandModel& hand, int finger) {
+  const std::string name = FingerName(hand, finger);
+  return {static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())))};
+}
+
+/// Lines of at most `room` wide.
+std::vector<std::string> Wrapped(Canvas* canvas, const std::string& text, double size,
+                                 double room) {
+  std::vector<std::string> lines(1);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    std::string& line = lines.back();
+    if (!line.empty() && canvas->TextWidth(line + " " + word, size, true) > room)
+      lines.push_back(word);
+    else
+      line += (line.empty() ? "" : " ") + word;
+    begin = end + 1;
+  }
+  return lines;
+}
+
+/// Something with a moment and a name.
+struct Moment {
+  double before_s = 0;  ///< negative: before the drop
+  std::string text;
+  Colour colour;
+};
+
+std::vector<Moment> Moments(std::span<const Event> events, const IncidentNote& note,
+                            const HandModel& hand, double dt) {
+  std::vector<Moment> moments;
+  for (const Event& event : events) {
+    switch (event.kind) {
+      case EventKind::kPush:
+      case EventKind::kParameter:
+      case EventKind::kNoise:
+      case EventKind::kSlip:
+      case EventKind::kStandIn:
+        moments.push_back({static_cast<double>(event.tick) * dt - note.time_s, event.text, kInk});
+        break;
+      default:
+        break;
+    }
+  }
+  const auto first = std::ranges::find(note.ends, false, &IncidentNote::ContactEnd::lifted);
+  std::string names;
+  for (auto end = first; end != note.ends.end() && end->time_s == first->time_s; ++end)
+    if (!end->lifted) names += (names.empty() ? "" : " and ") + FingerName(hand, end->finger);
+  if (!names.empty())
+    moments.push_back(
+        {first->time_s - note.time_s, names + " lost contact", LookOfFinger(first->finger).colour});
+  std::ranges::stable_sort(moments, {}, &Moment::before_s);
+  return moments;
+}
+
+/// A line through everything and a label in one of kLabelRows rows below `y`; a label that finds no
+/// room is left out.
+void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
+                 std::span<const Moment> moments) {
+  const Box& area = panels.front().area;
+  std::array<double, kLabelRows> taken;
+  taken.fill(-1e9);
+  for (const Moment& moment : moments) {
+    const double x = panels.front().At(moment.before_s, 0).x;
+    if (x < area.x) continue;
+    const double width = canvas->TextWidth(moment.text, 18, true) + 12;
+    // To the right of its mark, or to the left where the panel ends.
+    const bool left = x + width + 12 > area.br().x;
+    const double from = left ? x - width : x;
+    const auto row = std::ranges::find_if(taken, [from](double end) { return end < from; });
+    if (row != taken.end()) {
+      const double line = y + 24.0 * static_cast<double>(row - taken.begin());
+      *row = from + width + 8;
+      canvas->Mark(Marker::kDown, {x, line}, 5, moment.colour);
+      canvas->Text({left ? x - 12 : x + 12, line}, moment.text,
+                   {.size = 18,
+                    .colour = Shade(moment.colour, 0.15),
+                    .align_x = left ? AlignX::kRight : AlignX::kLeft,
+                    .bold = true});
+    }
+    canvas->Line({x, y + 6}, {x, panels.back().area.br().y}, {moment.colour, 1.6, {6, 4}});
+  }
+}
+
+/// The letter in a disc of the finger's colour.
+void DrawLetter(Canvas* canvas, Point2 at, const HandModel& hand, int finger) {
+  canvas->Disc(at, 12, kWhite);
+  canvas->Disc(at, 10.5, LookOfFinger(finger).colour);
+  canvas->Text(at, LetterOf(hand, finger),
+               {.size = 15, .colour = kWhite, .align_x = AlignX::kCentre, .bold = true});
+}
+
+}  // namespace
+
+void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
+                  const IncidentNote& note, const HandModel& hand, const PlotOptions& options,
+                  const std::string& path) {
+  const auto frames = Newest(history, options.last_s, path);
+  Canvas canvas(options.width, options.height, path);
+  const double left = 150, width = canvas.width() - left - 250, bottom = canvas.height() - 90;
+
+  double y = 34;
+  const std::string title = options.title.empty() ? note.cause : options.title;
+  for (const std::string& line : Wrapped(&canvas, title, 24, canvas.width() - 80)) {
+    canvas.Text({40, y}, line, {.size = 24, .bold = true});
+    y += 32;
+  }
+  canvas.Text({40, y},
+              fmt::format("tick {} · {}", note.tick, Facts(frames, hand, options.object_name)),
+              {.size = 18, .colour = kGrey});
+  y += 26;
+
+  // Strips: state, gait (while there is one), every finger. Then the labels, then the panels.
+  const int n = hand.num_fingers();
+  const bool gait = std::ranges::any_of(frames, [](const Frame& f) { return f.gait.active; });
+  const double strip = std::min(24.0, 150.0 / std::max(1, n)), strips = y;
+  const double fingers_top = strips + (gait ? 64 : 34);
+  const double labels = fingers_top + n * (strip + 4) + 16;
+  const double panels_top = labels + 24 * kLabelRows - 6;
+  const double room = bottom - panels_top - 2 * 22;
+
+  const auto before = Column(frames, [&](const Frame& f) { return f.time_s - note.time_s; });
+  const Axis time = NiceAxis(before.front(), 0, 9, false, "time before the drop [s]");
+  std::vector<std::vector<double>> forces;
+  Range force_range;
+  force_range.Add(0);
+  for (int f = 0; f < n; ++f) {
+    forces.push_back(Column(frames, [f](const Frame& frame) {
+      if (static_cast<std::size_t>(f) >= frame.fingers.size()) return kNoValue;
+      const FingerFrame& finger = frame.fingers[f];
+      return finger.true_contact ? -finger.true_force_W.dot(finger.true_normal_W) : 0.0;
+    }));
+    force_range.Add(forces.back());
+  }
+  const auto margin =
+      Column(frames, [](const Frame& f) { return Holds(f) ? f.stability.load_margin : kNoValue; });
+  const auto error = Column(
+      frames, [](const Frame& f) { return (f.p_WO - f.p_WO_reference).norm() * kMillimetres; });
+  Range margin_range, error_range;
+  margin_range.Add(0);
+  margin_range.Add(1.5 * note.margin_limit);
+  margin_range.Add(margin);
+  error_range.Add(0);
+  error_range.Add(error);
+  const auto axis = [](const Range& range, int ticks, std::string label) {
+    const Range padded = range.Padded(0, 0.06);
+    return NiceAxis(padded.lo, padded.hi, ticks, true, std::move(label));
+  };
+  const std::array<Panel, 3> panels = {
+      Panel{{left, panels_top, width, 0.44 * room}, time, axis(force_range, 4, "force [N]")},
+      Panel{{left, panels_top + 0.44 * room + 22, width, 0.28 * room},
+            time,
+            axis(margin_range, 3, "ρ [N]")},
+      Panel{{left, bottom - 0.28 * room, width, 0.28 * room},
+            time,
+            axis(error_range, 3, "error [mm]")}};
+
+  const auto bands = [&](const std::function<int(const Frame&)>& value) {
+    std::vector<Band> shifted = Bands(frames, value);
+    for (Band& band : shifted) {
+      // What lasted until the last frame lasted until the drop.
+      band.end_s = band.end_s >= frames.back().time_s ? 0 : band.end_s - note.time_s;
+      band.begin_s -= note.time_s;
+    }
+    return shifted;
+  };
+  const auto states = bands([](const Frame& frame) { return static_cast<int>(frame.state); });
+  DrawStrip(&canvas, panels[0], strips, 24, "state", states, [](int value) {
+    const auto state = static_cast<SessionState>(value);
+    return BandLook{std::string(Name(state)), StateColour(state)};
+  });
+  if (gait)
+    DrawStrip(&canvas, panels[0], strips + 30, 24, "gait", bands(GaitStateOf), [&](int value) {
+      if (value == kTurning) return BandLook{"all hold", Tint(kInk, 0.9)};
+      return BandLook{FingerName(hand, value) + " regrasps", Tint(LookOfFinger(value).colour, 0.42),
+                      "S_" + LetterOf(hand, value)};
+    });
+  for (int f = 0; f < n; ++f)
+    DrawStrip(&canvas, panels[0], fingers_top + f * (strip + 4), strip, FingerName(hand, f),
+              bands([f](const Frame& frame) { return ActivityOf(frame, f); }),
+              [f](int value) { return LookOfActivity(f, value); });
+
+  for (const Panel& panel : panels) {
+    DrawStateBackground(&canvas, panel, states);
+    DrawGrid(&canvas, panel, &panel == &panels.back());
+  }
+  const double limit_y = panels[1].At(0, note.margin_limit).y;
+  canvas.FillBox({left, limit_y, width, panels[1].area.br().y - limit_y}, Tint(kVermillion, 0.72));
+  DrawMoments(
+      &canvas, panels, labels,
+      Moments(events, note, hand, note.time_s / std::max(1.0, static_cast<double>(note.tick))));
+
+  for (int f = 0; f < n; ++f)
+    DrawCurve(&canvas, panels[0], before, forces[f], {LookOfFinger(f).colour, 3});
+  const Pen limit{kVermillion, 2, {12, 7}};
+  canvas.Line({left, limit_y}, {left + width, limit_y}, limit);
+  const double lost_y = panels[2].At(0, note.drop_distance * kMillimetres).y;
+  if (lost_y > panels[2].area.y) canvas.Line({left, lost_y}, {left + width, lost_y}, limit);
+  DrawCurve(&canvas, panels[1], before, margin, {kInk, 3});
+  DrawCurve(&canvas, panels[2], before, error, {kInk, 3});
+  for (int f = 0; f < n && !before.empty(); ++f) {
+    // Along the curves, so that they are told apart without colour.
+    for (const double share : {0.02, 0.35, 0.68}) {
+      const auto i =
+          static_cast<std::size_t>((share + 0.05 * f) * static_cast<double>(before.size() - 1));
+      if (i < before.size() && std::isfinite(forces[f][i]))
+        DrawLetter(&canvas, panels[0].At(before[i], forces[f][i]), hand, f);
+    }
+  }
+  for (const IncidentNote::ContactEnd& end : note.ends) {
+    const double t = end.time_s - note.time_s;
+    if (t < time.lo) continue;
+    canvas.Mark(Marker::kCross, panels[0].At(t, 0), 9, LookOfFinger(end.finger).colour);
+  }
+  for (const Panel& panel : panels) DrawFrame(&canvas, panel);
+
+  const double side = left + width + 24;
+  std::vector<LegendEntry> fingers;
+  for (int f = 0; f < n; ++f)
+    fingers.push_back({FingerName(hand, f), [&hand, f](Canvas* c, Point2 m) {
+                         c->Line(m - Point2(22, 0), m + Point2(22, 0), {LookOfFinger(f).colour, 3});
+                         DrawLetter(c, m, hand, f);
+                       }});
+  if (!note.ends.empty()) fingers.push_back(MarkEntry("last contact", Marker::kCross, kInk));
+  DrawLegend(&canvas, {side, panels[0].area.y}, "normal force, true", fingers);
+  const std::array<LegendEntry, 2> margins = {
+      LineEntry("of the grasp", {kInk, 3}),
+      LineEntry(fmt::format("limit {:.2g} N", note.margin_limit), limit)};
+  DrawLegend(&canvas, {side, panels[1].area.y}, "load margin ρ, sensed", margins);
+  const std::array<LegendEntry, 2> errors = {
+      LineEntry("off its place", {kInk, 3}),
+      LineEntry(fmt::format("dropped: {:.2g} mm", note.drop_distance * kMillimetres), limit)};
+  DrawLegend(&canvas, {side, panels[2].area.y}, "object, true", errors);
+  canvas.Save();
+}
+
+}  // namespace regrasp

@@ -1,0 +1,198 @@
+"""Run files as users meet them: recorded by one process, replayed by another, read by the public MCAP library,
+whole and after kill -9."""
+
+import ast
+import csv
+import json
+import os
+import pathlib
+import shutil
+import signal
+import struct
+import subprocess
+import unittest
+import zipfile
+
+from harness import Case, DaemonCase, HANG_S, SOURCE, environment
+
+
+class Runs(DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1", "--paused"]
+
+    def step(self, ticks):
+        self.expect(0, "step", ticks, "--wait")
+
+    def record(self, name="run.mcap"):
+        """A grasp, an exploration, a push, noise changes; 5.2 s. Returns the path."""
+        path = self.json("record", "start", name)["path"]
+        self.expect(0, "grasp")
+        self.step(2800)
+        self.expect(0, "noise", "preset", "coarse")
+        self.expect(0, "explore", "ring", "--max-cycles", 800)
+        self.step(1200)
+        self.expect(0, "push", "--force", "0.2,0,0", "--duration", "0.05")
+        self.expect(0, "noise", "set", "--position", "0.5")
+        self.step(400)
+        self.expect(0, "stop")
+        self.step(200)
+        self.expect(0, "rotate", "--angle", "10")
+        self.step(600)
+        return pathlib.Path(path)
+
+    def test_a_run_replays_in_another_process_and_tampering_shows(self):
+        path = self.record()
+        stopped = self.json("record", "stop")
+        self.assertEqual(stopped["dropped"], 0)
+        whole = self.json("replay", "run")  # by its name in the output directory
+        self.assertTrue(whole["identical"])
+        self.assertTrue(whole["same_build"])
+        self.assertEqual((whole["commands"], whole["ticks"]), (7, 5200))
+        self.assertGreater(whole["states_compared"], 500)
+        self.expect(0, "down")
+        self.assertIn("identical", self.expect(0, "replay", path, "--speed", "20").stdout)  # and without a daemon
+
+        tampered = self.dir / "tampered.mcap"
+        data = path.read_bytes()
+        at = data.index(b'"duration_s":0.05')
+        # Same length, so that every offset stays; the chunk's checksum is taken out of the way.
+        tampered.write_bytes(without_checksums(data[:at] + b'"duration_s":0.06' + data[at + 17:]))
+        found = self.json("replay", tampered, code=1)
+        self.assertEqual(found["first_difference"]["tick"], 4000)
+        self.assertEqual(found["first_difference"]["last_equal_tick"], 4000)
+        self.assertIn("differs at tick 4000, at command 3 (push)", self.regrasp("replay", tampered).stdout)
+
+    def test_exports_hold_the_same_numbers(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        self.expect(0, "export", path, "--format", "csv", "-o", self.dir / "csv")
+        self.expect(0, "export", path, "--format", "npz", "-o", self.dir / "run.npz")
+        self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "copy.mcap")
+        self.assertTrue(self.json("replay", self.dir / "copy.mcap")["identical"])
+        with open(self.dir / "csv" / "joints.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        angles = [column for column in rows[0] if column.startswith("angle_rad.")]
+        self.assertEqual(len(angles), 22)
+        self.assertTrue(all(column.endswith(" [rad]") for column in angles), angles)
+        self.assertIn("t_s [s]", rows[0])
+        arrays = read_npz(self.dir / "run.npz")
+        shape, values = arrays["joints.angle_rad"]
+        self.assertEqual(shape, (len(rows), 22))
+        for i, column in enumerate(angles):
+            self.assertEqual(float(rows[-1][column]), values[-22 + i])
+        self.assertEqual(arrays["contacts.p_WC_m"][0], (len(rows), 5, 3))
+        self.assertIn("joints.torque_nm [N m]", arrays["units"][1])
+        self.assertIn("exists", self.refused(74, "export", path, "--format", "npz", "-o", self.dir / "run.npz")[0])
+
+    def test_a_film_has_its_pictures(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        film = self.json("video", path, "-o", self.dir / "run.mp4", "--from", "4", "--to", "4.4", "--fps", "10")
+        self.assertEqual(film["frames"], 4)
+        data = (self.dir / "run.mp4").read_bytes()
+        self.assertIn(b"ftyp", data[:16])
+        self.assertGreater(len(data), 10000)
+
+    def test_after_kill_9_everything_up_to_the_last_command_is_there(self):
+        path = self.record()
+        os.kill(pid_of(path), signal.SIGKILL)
+        found = self.json("replay", path)
+        self.assertFalse(found["complete"])
+        self.assertTrue(found["identical"])
+        self.assertEqual(found["commands"], 7)
+        self.assertGreaterEqual(found["ticks"], 4600)  # the last command, at the least
+        self.public_reader(path, complete=False, killed=True)
+        self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "mended.mcap")
+        self.assertTrue(self.json("replay", self.dir / "mended.mcap")["complete"])
+        self.public_reader(self.dir / "mended.mcap", complete=True, killed=True)
+
+    def test_the_public_library_reads_a_finished_file(self):
+        path = self.record()
+        messages = self.json("record", "stop")["messages"]
+        counts = self.public_reader(path, complete=True)
+        self.assertEqual(sum(stream for stream, _ in counts.values()), messages)
+        self.assertEqual(counts["commands"][0], 7)
+
+    def public_reader(self, path, complete, killed=False):
+        """Reads `path` with @mcap/core; every message by stream, and by index when the file is complete."""
+        if not shutil.which("node"):
+            self.skipTest("node is not installed: the public MCAP library cannot be asked")
+        modules = pathlib.Path(os.environ["REGRASP_NODE_DIR"])
+        if not (modules / "node_modules" / "@mcap" / "core").exists():
+            modules.mkdir(parents=True, exist_ok=True)
+            for name in ("package.json", "package-lock.json"):
+                shutil.copy(SOURCE / "tests" / "end_to_end" / "mcap_reader" / name, modules)
+            done = subprocess.run(["npm", "ci", "--no-audit", "--no-fund", "--ignore-scripts"], cwd=modules,
+                                  capture_output=True, text=True, timeout=HANG_S, check=False)
+            self.assertEqual(done.returncode, 0, "npm could not install @mcap/core: " + done.stdout + done.stderr)
+        done = subprocess.run(["node", str(SOURCE / "tests" / "end_to_end" / "mcap_reader" / "read.js"), str(path)],
+                              env=environment(NODE_PATH=str(modules / "node_modules")),
+                              capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        counts = json.loads(done.stdout)
+        for topic, (stream, index) in counts.items():
+            self.assertEqual(index, stream if complete else 0, topic)
+        # The last fifth of a second may be missing after a kill: the gait had just begun.
+        for topic in ("run", "commands", "state", "events", "joints", "contacts", "forces", "object", "quality",
+                      *([] if killed else ["gait"])):
+            self.assertGreater(counts[topic][0], 0, topic)
+        return counts
+
+
+class WithoutARun(Case):
+    def test_errors(self):
+        self.assertIn("no daemon to ask", self.refused(6, "replay", "nothing.mcap")[0])
+        text = self.dir / "text.mcap"
+        text.write_text("not a run")
+        self.assertIn("not an MCAP file", self.refused(74, "replay", text)[0])
+        self.refused(2, "export", text, "--format", "xls")
+        self.refused(2, "replay", text, "--speed", "0")
+
+
+def pid_of(path):
+    """The process that has `path` open."""
+    for link in pathlib.Path("/proc").glob("[0-9]*/fd/*"):
+        try:
+            if os.readlink(link) == str(path):
+                return int(link.parts[2])
+        except OSError:
+            continue
+    raise AssertionError(f"nobody has {path} open")
+
+
+def without_checksums(data):
+    """The MCAP file with the checksum of every chunk set to 0, which means: not checked."""
+    data = bytearray(data)
+    at = 8
+    while at + 9 <= len(data) - 8:
+        opcode, length = data[at], struct.unpack_from("<Q", data, at + 1)[0]
+        if opcode == 6:
+            struct.pack_into("<I", data, at + 9 + 24, 0)
+        at += 9 + length
+    return bytes(data)
+
+
+def read_npz(path):
+    """{name: (shape, flat values)}, without NumPy."""
+    arrays = {}
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+        for member in archive.namelist():
+            data = archive.read(member)
+            assert data[:8] == b"\x93NUMPY\x01\x00", member
+            size = struct.unpack_from("<H", data, 8)[0]
+            assert (10 + size) % 64 == 0, member
+            header = ast.literal_eval(data[10:10 + size].decode())
+            body, kind = data[10 + size:], header["descr"]
+            if kind == "<f8":
+                values = list(struct.unpack(f"<{len(body) // 8}d", body))
+            elif kind == "|b1":
+                values = [bool(b) for b in body]
+            else:
+                width = 4 * int(kind[2:])
+                values = [body[i:i + width].decode("utf-32-le").rstrip("\0") for i in range(0, len(body), width)]
+            arrays[member.removesuffix(".npy")] = (header["shape"], values)
+    return arrays
+
+
+if __name__ == "__main__":
+    unittest.main()

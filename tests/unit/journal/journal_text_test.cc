@@ -1,0 +1,115 @@
+// Journals as text: every bit comes back.
+
+#include "core/journal/journal_text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/journal/replay.h"
+
+namespace regrasp {
+namespace {
+
+SessionConfig Config(const std::string& object) {
+  SessionConfig config;
+  config.model = LoadScenario("shadow", object, ModelSearchPath());
+  config.parameters = DefaultParameters(config.model);
+  config.noise = *NoisePreset("taxel");
+  config.seed = 18446744073709551615u;
+  config.world.contact_damping = 8.1;
+  return config;
+}
+
+TEST(JournalText, AConfigurationGivesTheSameSession) {
+  for (const std::string object : {"sphere", "egg"}) {
+    SessionConfig config = Config(object);
+    // Values whose decimal form is long.
+    config.parameters.object.mass_kg = 0.1 + 0.2;
+    config.parameters.gravity_W = Vector3d(1e-300, -0.0, -9.81 / 3);
+    const ConfigRead read = ParseConfig(ConfigText(config, 4));
+    EXPECT_EQ(read.segment, 4);
+    EXPECT_EQ(read.build, BuildIdentity());
+    EXPECT_EQ(ConfigText(read.config, 4), ConfigText(config, 4));
+    Session original(config), copy(read.config);
+    for (int i = 0; i < 50; ++i) {
+      original.Tick();
+      copy.Tick();
+    }
+    EXPECT_EQ(original.StateHash(), copy.StateHash()) << object;
+  }
+}
+
+// A member that is not in the parameter table would be lost.
+TEST(JournalText, TheParameterTableHoldsEveryParameter) {
+  int numbers = 0;
+  for (const ParameterInfo& info : ParameterTable()) numbers += info.size;
+  EXPECT_EQ(sizeof(Parameters), static_cast<std::size_t>(numbers) * sizeof(double));
+}
+
+TEST(JournalText, EveryCommandComesBack) {
+  const SessionConfig config = Config("sphere");
+  std::size_t seq = 0;
+  for (const CommandType type :
+       {CommandType::kGrasp, CommandType::kRelease, CommandType::kExplore, CommandType::kRotate,
+        CommandType::kStop, CommandType::kNoise, CommandType::kPush, CommandType::kParameter,
+        CommandType::kCancelJob, CommandType::kBranch}) {
+    JournalEntry entry;
+    entry.tick = 12345;
+    entry.state_hash = 0x00ab;
+    Command& c = entry.command;
+    c.type = type;
+    c.job = 7;
+    c.finger = 3;
+    c.criterion = Criterion::kSwitched;
+    c.estimator = Estimator::kSecant;
+    c.seed = 1ull << 60;
+    c.max_cycles = 99;
+    c.continuous = true;
+    c.angle_rad = -0.1;
+    c.axis_W = Vector3d(0.6, 0, -0.8);
+    c.speed_rad_s = 1.0 / 3;
+    c.noise = *NoisePreset("coarse");
+    c.force_W = Vector3d(0.1, 0.2, 0.3);
+    c.duration_s = 0.7;
+    c.parameter = FindParameter("gravity");
+    c.value = Vector3d(1.1, 2.2, -3.3);
+    c.reseed = true;
+    const std::string text = EntryText(entry, config, 2, seq);
+    const EntryRead read = ParseEntry(text, config);
+    EXPECT_EQ(read.entry.command.type, type) << text;
+    EXPECT_EQ(read.segment, 2);
+    EXPECT_EQ(read.seq, seq);
+    EXPECT_EQ(EntryText(read.entry, config, 2, seq), text);
+    ++seq;
+  }
+  EXPECT_EQ(
+      ParseEntry(EntryText({.tick = 1, .command = {.type = CommandType::kExplore, .finger = 3}},
+                           config, 0, 0),
+                 config)
+          .entry.command.finger,
+      3);
+}
+
+TEST(JournalText, TellsWhatIsWrong) {
+  const SessionConfig config = Config("sphere");
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      ParseEntry(text, config);
+    } catch (const JournalError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message("{").find("not JSON"), std::string::npos);
+  EXPECT_NE(message("{}").find("segment is missing"), std::string::npos);
+  EXPECT_NE(message(R"({"segment":"x"})").find("segment is of another kind"), std::string::npos);
+  EXPECT_NE(
+      message(R"({"segment":0,"seq":0,"tick":0,"method":"fly","state_hash":"0000000000000000"})")
+          .find("unknown method 'fly'"),
+      std::string::npos);
+  EXPECT_THROW(ParseConfig(R"({"format":"regrasp-run/2"})"), JournalError);
+}
+
+}  // namespace
+}  // namespace regrasp
