@@ -146,7 +146,10 @@ int FullScreen::Key() {
   while (true) {
     const int key = ::wgetch(stdscr);
     if (key == ERR) return 0;
-    if (key < 256) return key;  // a function key or a new size of the window: nothing to do here
+    // A new size of the window, or several that ended where they began, of which ncurses would see
+    // no change: what the terminal still shows is unknown, so the next picture is drawn whole.
+    if (key == KEY_RESIZE) ::clearok(curscr, TRUE);
+    if (key < 256) return key;  // a function key: nothing to do here
   }
 }
 

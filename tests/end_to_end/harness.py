@@ -1,5 +1,6 @@
 """What the end-to-end tests share: running `regrasp`, a private daemon, a scripted daemon, a terminal."""
 
+import atexit
 import json
 import os
 import pathlib
@@ -19,11 +20,14 @@ REGRASP = BIN / "regrasp"
 REGRASPD = BIN / "regraspd"
 # Far above anything a loaded machine needs: reached only by a hang.
 HANG_S = 120
+# A home of their own for the programs under test: what they write there (history, output) goes with it.
+HOME = tempfile.mkdtemp(prefix="regrasp-home-")
+atexit.register(shutil.rmtree, HOME, ignore_errors=True)
 
 
 def environment(**changes):
     """A bare environment: nothing of the caller's decides what a test sees."""
-    env = {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "HOME": "/nonexistent"}
+    env = {"PATH": "/usr/bin:/bin", "LC_ALL": "C.UTF-8", "HOME": HOME}
     env.update(changes)
     return env
 

@@ -100,7 +100,7 @@ TEST(Config, TheDefaultFileIsTheDefault) {
 
 TEST(Config, AMissingFileIsAnError) {
   DaemonConfig config;
-  EXPECT_THROW(ReadConfigFile("/nonexistent.toml", &config), ConfigError);
+  EXPECT_THROW(ReadConfigFile("/dev/null/absent.toml", &config), ConfigError);
 }
 
 TEST_F(DaemonTest, ParametersOfTheFileAreInForce) {
