@@ -7,6 +7,8 @@
 namespace regrasp {
 namespace {
 
+constexpr int kLostTicks = 20;  // a finger without contact for so many ticks carries nothing
+
 /// Weight of the new sample in a first-order low pass.
 double Gain(double dt, double time_constant) { return dt / (time_constant + dt); }
 
@@ -117,7 +119,8 @@ Grasp GraspOf(const Estimate& estimate, unsigned fingers, double mu) {
   Grasp grasp;
   for (std::size_t i = 0; i < estimate.fingers.size(); ++i) {
     const FingerEstimate& f = estimate.fingers[i];
-    if (!(fingers >> i & 1u) || !f.ever_in_contact) continue;
+    if (!(fingers >> i & 1u) || !f.ever_in_contact || f.ticks_without_contact >= kLostTicks)
+      continue;
     grasp.push_back({f.p_WC - estimate.p_WO, -f.normal_W, mu});
   }
   return grasp;

@@ -59,7 +59,8 @@ class StateEstimator {
 };
 
 /// The contacts of the fingers whose bit is set in `fingers`, positions relative to the estimated
-/// object centre, friction coefficient `mu`. Fingers that never touched are left out.
+/// object centre, friction coefficient `mu`. Fingers that have not touched for 20 ticks are left
+/// out.
 Grasp GraspOf(const Estimate& estimate, unsigned fingers, double mu);
 
 }  // namespace regrasp

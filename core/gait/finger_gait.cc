@@ -17,6 +17,7 @@ constexpr double kInsideDisc = 0.9;  // of the disc's radius: what is remembered
 constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
 constexpr int kSearchLimit = 300;    // evaluations
 constexpr double kMostLead = 0.35;   // rad
+constexpr double kWantMore = 1.5;    // of the margin of the stance from which a finger was refused
 constexpr int kIdleCycles = 3;       // cycles without progress before the gait gives up
 
 }  // namespace
@@ -60,6 +61,7 @@ void FingerGait::Start(const Request& request, const HandModel& hand, const Esti
     home_.manipulability[i] = f.manipulability;
     home_stance_.push_back({home_.p_OC[i], f.p_WF - wrench.p_ref(), f.normal_W});
   }
+  first_stance_ = home_stance_;
   Enter(GaitPhase::kStance);
 }
 
@@ -81,12 +83,14 @@ void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
   if (ticks_ == 1) {
     const int opposing = order_.empty() ? -1 : order_.back().finger;
     const int leaves = request_.make_room_for >= 0 ? request_.make_room_for : opposing;
-    search_.Start(home_stance_, fingers_, leaves, parameters.max_shift, request_.seed);
+    margin_wanted_ = std::max(parameters.margin_wanted, kWantMore * margin_wanted_);
+    search_.Start(first_stance_, home_stance_, fingers_, leaves, parameters.max_shift,
+                  request_.seed + static_cast<std::uint64_t>(searches_++));
   }
   if (ticks_ % kSearchTicks == 0)
     search_.Step(weight, control.friction_estimate, estimate.object_scale,
                  control.max_normal_force);
-  if (search_.margin() < parameters.margin_wanted && search_.evaluations() < kSearchLimit) return;
+  if (search_.margin() < margin_wanted_ && search_.evaluations() < kSearchLimit) return;
   home_stance_ = search_.stance();
   for (std::size_t i = 0; i < home_stance_.size(); ++i) home_.p_OC[i] = home_stance_[i].p_OC;
   waiting_ = fingers_;
@@ -123,6 +127,14 @@ void FingerGait::EndMotion() {
   }
   waiting_ = fingers_;
   refused_finger_ = -1;
+  sought_ = false;
+}
+
+double FingerGait::DiscShare(const GaitParameters& parameters) const {
+  if (order_.empty()) return 1;
+  const double margin = smooth_.without[order_.back().finger] - parameters.margin_min;
+  const double wanted = parameters.margin_wanted - parameters.margin_min;
+  return wanted > 0 ? std::clamp(margin / wanted, 0.0, 1.0) : 1.0;
 }
 
 StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) const {
@@ -137,7 +149,8 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const GaitParameters& parameters) const {
   const StanceContact home = HomeOf(finger, parameters);
   if (parameters.mode == static_cast<double>(GaitMode::kExploring)) {
-    const StanceContact found = Shifted(home, TangentPart(found_[finger], home.normal_W));
+    const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
+    const StanceContact found = Shifted(home, TangentPart(share * found_[finger], home.normal_W));
     return {wrench.p_ref() + home.p_OC, wrench.p_ref() + home.p_OF, home.normal_W,
             wrench.p_ref() + found.p_OC};
   }
@@ -195,6 +208,7 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
       request.without = order_[pick + 1].finger;
     }
     request.gradient_W = gradient_[step.finger];
+    request.disc_share = DiscShare(parameters);
     regrasp_.Start(request);
     happened_.regrasp_began = true;
     Enter(GaitPhase::kRegrasp);
@@ -206,6 +220,11 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
 void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameters) {
   if (request_.make_room_for >= 0) {
     Enter(GaitPhase::kFinish);
+    return;
+  }
+  if (refused_finger_ >= 0 && refused_finger_ == order_.back().finger && !sought_) {
+    sought_ = true;  // once per cycle: contacts from which it may leave
+    Enter(GaitPhase::kStance);
     return;
   }
   if (turned_before_ > 0) ++cycles_;
@@ -363,6 +382,8 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   for (const Vector3d& gradient : gradient_) hasher->Add(gradient);
   for (double lead : lead_) hasher->Add(lead);
   for (const StanceContact& contact : home_stance_) hasher->Add(contact.p_OF);
+  hasher->Add(margin_wanted_);
+  hasher->Add(sought_);
   manipulation_.AddTo(hasher);
   regrasp_.AddTo(hasher);
 }

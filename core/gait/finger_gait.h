@@ -101,6 +101,9 @@ class FingerGait {
   StanceContact HomeOf(int finger, const GaitParameters& parameters) const;
   Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench,
                            const GaitParameters& parameters) const;
+  /// How much of the exploring disc is free: all of it while the grasp without the opposing finger
+  /// has the load margin that is wanted, nothing where it has hardly the one that is needed.
+  double DiscShare(const GaitParameters& parameters) const;
   bool Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
                  double rotation);
 
@@ -112,7 +115,11 @@ class FingerGait {
   unsigned fingers_ = 0;
   GaitOrder order_;
   LocalManipulation::Home home_;
-  Stance home_stance_;  // where each finger comes back to
+  Stance first_stance_;  // where the fingers touched when the rotation began
+  Stance home_stance_;   // where each finger comes back to
+  double margin_wanted_ =
+      0;  // of the stance search; raised when the opposing finger is refused [N]
+  int searches_ = 0;
   StanceSearch search_;
   // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The
   // next exploration of the finger goes there from the first contact, then Algorithm 1 takes over.
@@ -131,6 +138,7 @@ class FingerGait {
   double turned_before_ = 0, turned_in_cycle_ = 0;
   int idle_cycles_ = 0;
   int refused_finger_ = -1;  // in this cycle
+  bool sought_ = false;      // another stance, in this cycle
   double refused_margin_ = 0;
   int cycles_ = 0, regrasps_ = 0;
   Happened happened_;

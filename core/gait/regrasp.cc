@@ -18,6 +18,7 @@ constexpr double kSlideLimit_s = 2.5;
 constexpr double kReturned = 0.0003;    // [m]
 constexpr double kRecallLimit_s = 0.6;  // of the slides to the last end and to the best contact
 constexpr double kSettle_s = 0.08;
+constexpr double kDiscSlack = 0.0005;  // a best contact may be so far beyond the disc [m]
 constexpr double kDiscReturn =
     1.0;  // share of the excess over the disc that counts as a wall's depth
 
@@ -95,7 +96,7 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
   FindWalls(hand, estimate, request_.finger, exploration, &input.walls);
   const Vector3d out = TangentPart(finger.p_WC - target.p_WC, finger.normal_W);
-  const double excess = out.norm() - parameters.disc_radius;
+  const double excess = out.norm() - request_.disc_share * parameters.disc_radius;
   if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess, true});
 
   if (phase_ == Phase::kSettle) {
@@ -111,12 +112,12 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
     Enter(Phase::kReload);
   };
   if (abort_ || lost) return End();
-  best_.Add(finger.p_WC, phi_, dt);
+  if (excess < kDiscSlack) best_.Add(finger.p_WC, phi_, dt);
   if (phase_ == Phase::kExplore) {
     const bool over = ticks_ * dt > parameters.explore_s;
     if (!over && algorithm_.Update(input, exploration, dt) == SurfaceExploration::Status::kRunning)
       task->v_W = algorithm_.velocity_W();
-    else if (best_.worth_returning())
+    else if (best_.worth_returning() || excess >= kDiscSlack)
       Enter(Phase::kReturn);
     else
       End();
@@ -260,6 +261,7 @@ void Regrasp::AddTo(StateHasher* hasher) const {
   hasher->Add(ticks_);
   if (!active()) return;
   hasher->Add(request_.finger);
+  hasher->Add(request_.disc_share);
   hasher->Add(abort_);
   hasher->Add(cap_start_);
   hasher->Add(p_target_W_);

@@ -38,6 +38,7 @@ class Regrasp {
         -1;  ///< explore: the stability that counts is that without this finger; -1: with all
     std::uint64_t seed = 0;
     Vector3d gradient_W = Vector3d::Zero();  ///< start of Algorithm 1 [1/m]; zero: random
+    double disc_share = 1;  ///< explore: of gait.disc_radius, within which the new contact may be
   };
   /// Where the finger shall go, in W; follows the object's reference position.
   struct Target {

@@ -18,10 +18,11 @@ StanceContact Shifted(const StanceContact& contact, const Vector3d& step) {
           turn * contact.normal_W};
 }
 
-void StanceSearch::Start(const Stance& stance, unsigned fingers, int without, double max_shift,
-                         std::uint64_t seed) {
+void StanceSearch::Start(const Stance& first, const Stance& stance, unsigned fingers, int without,
+                         double max_shift, std::uint64_t seed) {
   *this = StanceSearch();
-  first_ = best_ = stance;
+  first_ = first;
+  best_ = stance;
   fingers_ = fingers;
   without_ = without;
   max_shift_ = max_shift;

@@ -24,10 +24,11 @@ StanceContact Shifted(const StanceContact& contact, const Vector3d& step);
 /// per call of Step(): a load margin costs some 50 us, so that it is called every few ticks.
 class StanceSearch {
  public:
-  /// `stance`: contacts of all fingers; `fingers`: bits of those that touch; `without`: finger that
-  /// shall leave; the others may move by at most `max_shift` [m].
-  void Start(const Stance& stance, unsigned fingers, int without, double max_shift,
-             std::uint64_t seed);
+  /// `stance`: contacts of all fingers, from which the search sets out; `fingers`: bits of those
+  /// that touch; `without`: finger that shall leave; the others may be at most `max_shift` [m] from
+  /// where `first` has them.
+  void Start(const Stance& first, const Stance& stance, unsigned fingers, int without,
+             double max_shift, std::uint64_t seed);
   /// One evaluation. weight [N]; torque_scale [m]; max_force [N].
   void Step(const Vector3d& weight, double mu, double torque_scale, double max_force);
   const Stance& stance() const { return best_; }

@@ -100,7 +100,7 @@ TEST(Stance, SearchRaisesTheMarginWithinItsBound) {
   }
   const Vector3d weight(0, 0, -0.785);
   StanceSearch search;
-  search.Start(stance, 0b11111, 4, 0.006, 7);
+  search.Start(stance, stance, 0b11111, 4, 0.006, 7);
   search.Step(weight, 0.5, 0.025, 4.0);
   const double first = search.margin();
   for (int k = 0; k < 200; ++k) search.Step(weight, 0.5, 0.025, 4.0);
