@@ -8,7 +8,9 @@
 namespace regrasp {
 namespace {
 
-constexpr double kTop = 150, kBottom = 90, kLeft = 230, kRight = 60, kGap = 46;
+constexpr double kTop = 150, kBottom = 90, kLeft = 230, kRight = 40, kGap = 46;
+constexpr double kBetween = 50;  // columns
+constexpr double kLabelSize = 18;
 constexpr double kRowHeight = 40;    // least
 constexpr double kMostPerMark = 22;  // height
 
@@ -52,6 +54,15 @@ void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, do
   canvas->Line({x(q.median), y - height / 2 - 2}, {x(q.median), y + height / 2 + 2}, {colour, 3});
 }
 
+Axis MeasureAxis(const ExperimentPicture& picture, std::size_t which) {
+  Range range;
+  for (const auto& group : picture.groups)
+    if (const QuantileMark& q = group.measures.at(which); q.has_values)
+      for (const double value : {q.q05, q.q95}) range.Add(value);
+  if (range.empty()) range.Add(0);
+  return NiceAxis(range.lo, range.hi, 5, true, picture.measure_labels.at(which));
+}
+
 }  // namespace
 
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
@@ -71,34 +82,35 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
   const double unit_height = canvas.height(), unit_width = canvas.width();
   DrawTitle(&canvas, picture.title, picture.facts);
 
-  Range range;
-  for (const auto& group : picture.groups)
-    if (group.measure.has_values)
-      for (const double value : {group.measure.q05, group.measure.q95}) range.Add(value);
-  if (range.empty()) range.Add(0);
-  const Axis measure = NiceAxis(range.lo, range.hi, 6, true, picture.measure_label);
-  const Axis share = NiceAxis(0, 100, 5, false, "share of trials, 95 % interval  [%]");
-  const double free = unit_width - kLeft - kRight - 60;
-  const double left_width = free * 0.52, right_width = free * 0.48;
+  double labels = kLeft;
+  for (const auto& row : rows)
+    labels = std::max(labels, 40 + 14 + canvas.TextWidth(row, kLabelSize));
+  std::vector<Axis> axes = {NiceAxis(0, 100, 5, false, "share of trials, 95 % interval  [%]")};
+  for (std::size_t m = 0; m < picture.measure_labels.size(); ++m)
+    axes.push_back(MeasureAxis(picture, m));
+  const auto columns = static_cast<double>(axes.size());
+  const double free = unit_width - labels - kRight - kBetween * (columns - 1);
+  const double width = free / columns;
   const double stretch = (unit_height - kTop - kBottom - (blocks - 1) * kGap) / (blocks * block);
 
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const double top = kTop + static_cast<double>(p) * (block * stretch + kGap);
-    const Box left_box(kLeft, top, left_width, block * stretch);
-    const Box right_box(kLeft + left_width + 60, top, right_width, block * stretch);
     const Axis none{0.2, 0.8, 1, ""};  // no ticks
-    const Panel left{left_box, share, none}, right{right_box, measure, none};
-    const bool last = p + 1 == panels.size();
-    DrawGrid(&canvas, left, last);
-    DrawGrid(&canvas, right, last);
-    if (!panels[p].empty()) canvas.Text({kLeft, top - 16}, panels[p], {.size = 19, .bold = true});
+    std::vector<Panel> parts;
+    for (const Axis& axis : axes)
+      parts.push_back({Box(labels + static_cast<double>(parts.size()) * (width + kBetween), top,
+                           width, block * stretch),
+                       axis, none});
+    for (const Panel& part : parts) DrawGrid(&canvas, part, p + 1 == panels.size());
+    if (!panels[p].empty()) canvas.Text({labels, top - 16}, panels[p], {.size = 19, .bold = true});
     const double h = row_height * stretch;
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double y = top + h * static_cast<double>(r);
       if (r > 0)
-        for (const Box& box : {left_box, right_box})
-          canvas.Line({box.x, y}, {box.x + box.width, y}, {kGridGrey, 1});
-      canvas.Text({kLeft - 14, y + h / 2}, rows[r], {.size = 18, .align_x = AlignX::kRight});
+        for (const Panel& part : parts)
+          canvas.Line({part.area.x, y}, {part.area.x + part.area.width, y}, {kGridGrey, 1});
+      canvas.Text({labels - 14, y + h / 2}, rows[r],
+                  {.size = kLabelSize, .align_x = AlignX::kRight});
     }
     for (const auto& group : picture.groups) {
       if (group.panel != panels[p]) continue;
@@ -108,17 +120,17 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
       const double slot = std::min((h - 12) / n, kMostPerMark * static_cast<double>(marks));
       const double begin = y + (h - slot * n) / 2 + slot * static_cast<double>(s);
       for (std::size_t m = 0; m < group.shares.size(); ++m)
-        DrawShare(&canvas, left, group.shares[m], m,
+        DrawShare(&canvas, parts.front(), group.shares[m], m,
                   begin + slot * (static_cast<double>(m) + 0.5) / static_cast<double>(marks),
                   ColourOfSeries(s));
-      DrawQuantiles(&canvas, right, group.measure, begin + slot / 2, std::min(16.0, slot * 0.6),
-                    ColourOfSeries(s));
+      for (std::size_t m = 0; m < group.measures.size(); ++m)
+        DrawQuantiles(&canvas, parts[m + 1], group.measures[m], begin + slot / 2,
+                      std::min(16.0, slot * 0.6), ColourOfSeries(s));
     }
-    DrawFrame(&canvas, left);
-    DrawFrame(&canvas, right);
+    for (const Panel& part : parts) DrawFrame(&canvas, part);
   }
 
-  double x = kLeft;
+  double x = 40;
   const auto entry = [&](const std::string& text, auto&& draw) {
     draw(Point2{x + 12, 112});
     canvas.Text({x + 32, 112}, text, {.size = 17});
