@@ -4,44 +4,24 @@
 #include <stdexcept>
 
 #include "snapshots/axes.h"
+#include "snapshots/experiment_marks.h"
 
 namespace regrasp {
 namespace {
 
-constexpr double kTop = 150, kBottom = 90, kLeft = 230, kRight = 40, kGap = 46;
+constexpr double kTopOfAll = 150, kPanelTitle = 30, kBottom = 90, kLeft = 230, kRight = 40,
+                 kGap = 46;
 constexpr double kBetween = 50;  // columns
 constexpr double kLabelSize = 18;
 constexpr double kRowHeight = 40;    // least
 constexpr double kMostPerMark = 22;  // height
 
-std::vector<std::string> Distinct(const ExperimentPicture& picture,
-                                  std::string ExperimentGroup::*field) {
-  std::vector<std::string> names;
-  for (const auto& group : picture.groups)
-    if (std::find(names.begin(), names.end(), group.*field) == names.end())
-      names.push_back(group.*field);
-  return names;
-}
-
-std::size_t IndexOf(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-Colour ColourOfSeries(std::size_t series) {
-  constexpr std::array kColours = {kBlue, kVermillion, kGreen, kPurple};
-  return kColours[series % kColours.size()];
-}
-
-/// The first share is a full disc, the second an open square.
 void DrawShare(Canvas* canvas, const Panel& panel, const ShareMark& mark, std::size_t which,
                double y, Colour colour) {
   const double row = y, at = panel.At(100 * mark.share, 0).x;
   canvas->Line({panel.At(100 * mark.low, 0).x, row}, {panel.At(100 * mark.high, 0).x, row},
                {colour, which == 0 ? 2.5 : 1.5});
-  if (which == 0)
-    canvas->Mark(Marker::kDisc, {at, row}, 6, colour);
-  else
-    canvas->Mark(Marker::kSquare, {at, row}, 6, colour, kWhite);
+  DrawShareMark(canvas, {at, row}, which, colour);
 }
 
 void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, double y,
@@ -73,14 +53,17 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
   const auto panels = Distinct(picture, &ExperimentGroup::panel);
   const std::size_t marks = picture.groups.front().shares.size();
   const double lines = static_cast<double>(series.size() * std::max<std::size_t>(1, marks));
+  const bool named = !panels.front().empty();
+  const double top_of_panels = named ? kTopOfAll + kPanelTitle : kTopOfAll;
   const double row_height = std::max(kRowHeight, 15 * lines + 12);
   const double blocks = static_cast<double>(panels.size());
   const double block = row_height * static_cast<double>(rows.size());
-  const int height =
-      static_cast<int>(std::max(600.0, kTop + blocks * block + (blocks - 1) * kGap + kBottom));
+  const int height = static_cast<int>(
+      std::max(600.0, top_of_panels + blocks * block + (blocks - 1) * kGap + kBottom));
   Canvas canvas(1600, height, path);
   const double unit_height = canvas.height(), unit_width = canvas.width();
   DrawTitle(&canvas, picture.title, picture.facts);
+  DrawMarkLegend(&canvas, picture, series, true);
 
   double labels = kLeft;
   for (const auto& row : rows)
@@ -91,10 +74,11 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
   const auto columns = static_cast<double>(axes.size());
   const double free = unit_width - labels - kRight - kBetween * (columns - 1);
   const double width = free / columns;
-  const double stretch = (unit_height - kTop - kBottom - (blocks - 1) * kGap) / (blocks * block);
+  const double stretch =
+      (unit_height - top_of_panels - kBottom - (blocks - 1) * kGap) / (blocks * block);
 
   for (std::size_t p = 0; p < panels.size(); ++p) {
-    const double top = kTop + static_cast<double>(p) * (block * stretch + kGap);
+    const double top = top_of_panels + static_cast<double>(p) * (block * stretch + kGap);
     const Axis none{0.2, 0.8, 1, ""};  // no ticks
     std::vector<Panel> parts;
     for (const Axis& axis : axes)
@@ -130,29 +114,6 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
     for (const Panel& part : parts) DrawFrame(&canvas, part);
   }
 
-  double x = 40;
-  const auto entry = [&](const std::string& text, auto&& draw) {
-    draw(Point2{x + 12, 112});
-    canvas.Text({x + 32, 112}, text, {.size = 17});
-    x += 60 + canvas.TextWidth(text, 17);
-  };
-  for (std::size_t m = 0; m < marks; ++m)
-    entry(picture.groups.front().shares[m].name, [&](Point2 at) {
-      if (m == 0)
-        canvas.Mark(Marker::kDisc, at, 6, kInk);
-      else
-        canvas.Mark(Marker::kSquare, at, 6, kInk, kWhite);
-    });
-  if (series.size() > 1)
-    for (std::size_t s = 0; s < series.size(); ++s)
-      entry(series[s], [&](Point2 at) {
-        canvas.FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
-      });
-  entry("5, 25, 50, 75, 95 % of the trials", [&](Point2 at) {
-    canvas.Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
-    canvas.FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));
-    canvas.Line({at.x, at.y - 9}, {at.x, at.y + 9}, {kGrey, 3});
-  });
   canvas.Save();
 }
 

@@ -36,4 +36,8 @@ struct ExperimentPicture {
 /// with `path` as the other pictures do (snapshots.h).
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path);
 
+/// Shares against the rows (levels of noise), a panel for each finger, series beside each other.
+/// Throws as PlotExperiment().
+void PlotSweep(const ExperimentPicture& picture, const std::string& path);
+
 }  // namespace regrasp

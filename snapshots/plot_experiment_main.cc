@@ -34,20 +34,45 @@ std::string Joined(const Json& names) {
   return text;
 }
 
+/// ", gait.mode 0, ...": what holds for every trial.
+std::string Settings(const Json& plan) {
+  std::string text;
+  for (const auto& [name, value] : plan.at("set").items())
+    text += fmt::format(", {} {}", name, value.get<std::string>());
+  return text;
+}
+
+/// "−z" for "0,0,-1", else as it is.
+std::string AxisName(const std::string& axis) {
+  for (const auto& [text, name] :
+       {std::pair{"1,0,0", "+x"}, std::pair{"-1,0,0", "−x"}, std::pair{"0,1,0", "+y"},
+        std::pair{"0,-1,0", "−y"}, std::pair{"0,0,1", "+z"}, std::pair{"0,0,-1", "−z"}})
+    if (axis == text) return name;
+  return axis;
+}
+
+/// Explorations at several levels of noise.
+bool IsSweep(const Json& summary) {
+  const Json& plan = summary.at("experiment");
+  return plan.at("experiment") != "rotation" && plan.at("noise").size() > 1 &&
+         !plan.contains("cases");
+}
+
 ExperimentPicture PictureOf(const Json& summary) {
   const Json& plan = summary.at("experiment");
   const bool rotation = plan.at("experiment") == "rotation";
   const bool map = !rotation && plan.at("rays").get<int>() > 0;
   const bool sweep = plan.at("noise").size() > 1;
   ExperimentPicture picture;
-  picture.title = rotation ? "Turning the object by finger gait"
-                           : "Exploring with one finger: how often it succeeds";
+  picture.title = rotation           ? "Turning the object by finger gait"
+                  : IsSweep(summary) ? "Exploring with one finger: success against sensor noise"
+                                     : "Exploring with one finger: how often it succeeds";
   picture.facts = fmt::format(
       "{}, noise {}, seeds {} to {}, {} trials, regrasp {}",
       rotation ? fmt::format("{:.3g} turn{}", plan.at("turns").get<double>(),
                              plan.at("turns").get<double>() == 1 ? "" : "s")
                : "criterion " + plan.at("criterion").get<std::string>(),
-      Joined(plan.at("noise")), plan.at("first_seed").get<std::int64_t>(),
+      Joined(plan.at("noise")) + Settings(plan), plan.at("first_seed").get<std::int64_t>(),
       plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
       summary.at("trials").get<int>(), plan.at("version").get<std::string>());
   struct Measure {
@@ -70,7 +95,7 @@ ExperimentPicture PictureOf(const Json& summary) {
     const std::string name = json.value("case", "");
     const Json& counts = json.at("counts");
     if (rotation) {
-      const std::string axis = "axis " + json.at("axis_W").get<std::string>();
+      const std::string axis = "axis " + AxisName(json.at("axis_W"));
       group.row = !name.empty() ? name : axes || !sweep ? axis : "noise " + noise;
       group.panel = !name.empty() && axes ? axis : "";
       group.series = !name.empty() || axes ? "noise " + noise : "";
@@ -102,7 +127,9 @@ int main(int argc, char** argv) {
   }
   try {
     std::ifstream file(argv[1]);
-    regrasp::PlotExperiment(regrasp::PictureOf(nlohmann::ordered_json::parse(file)), argv[2]);
+    const auto summary = nlohmann::ordered_json::parse(file);
+    const auto draw = regrasp::IsSweep(summary) ? regrasp::PlotSweep : regrasp::PlotExperiment;
+    draw(regrasp::PictureOf(summary), argv[2]);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "regrasp-plot-experiment: {}\n", error.what());

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <vector>
 
 #include "cli/experiment/paper.h"
-#include "cli/experiment/statistics.h"
+#include "cli/experiment/paper_tables.h"
 #include "cli/print.h"
 
 namespace regrasp::cli {
@@ -18,8 +17,9 @@ constexpr double kForceTolerance = 0.02;  // of the weight
 constexpr double kTrueRadius_m = 0.025;   // the paper's sphere of 5 cm
 constexpr double kRadiusTolerance_m = 0.001;
 constexpr double kFewestSteps =
-    100;                         // turns of so many parts are written as turns, else as an angle
-constexpr double kMostly = 0.9;  // a share from which "always" is called partly shown
+    100;  // turns of so many parts are written as turns, else as an angle
+constexpr std::int64_t kFirstFreshSeed = 20000;
+constexpr double kMostly = 0.9;      // a share from which "always" is called partly shown
 constexpr double kClearDrop = 0.75;  // of stability in S_F against the mean
 
 /// What we do otherwise than the paper, or where it leaves the choice open.
@@ -32,8 +32,8 @@ constexpr const char* kDeviations = R"(
 | line 5 | Δc = P T (c′ − c) | the inverse of T: as printed it turns a displacement in r the wrong way |
 | line 6 | component-wise secant | offered as `secant`; the default fits the gradient by least squares over the recent past, with a circular dither |
 | line 7 | limit to ∇max | ∇max = 60 /m is ours |
-| line 11 | a displacement η ∇̃φ | a velocity, held to 4 … 15 mm/s: slower, friction stops the finger. η = 3e-4 m²/s is ours |
 | line 3, 11 | P, T at the contact | the contact is placed on the fingertip's known surface by its sensed normal: 2° of normal noise move it less than 1 mm of position noise |
+| line 11 | a displacement η ∇̃φ | a velocity, held to 4 … 15 mm/s: slower, friction stops the finger. η = 3e-4 m²/s is ours |
 | Alg. 1 | reference frame r | W, the fixed palm's frame |
 | Alg. 1 | φ in no unit | manipulability sqrt(det J Jᵀ) in 1e-4 m³, so that φ is of order 1 |
 | Alg. 1 | no bound | at most 8 mm from the start; joint limits, the other fingers and the end of the round fingertip are walls; with least squares a return to the best φ met and up to three tries |
@@ -47,28 +47,11 @@ constexpr const char* kDeviations = R"(
 | Sec. III | one start | each seed has its own start: joints σ 3°, object σ 2 mm |
 | Fig. 1 | Shadow Hand model of [8] | 22 joints, links as capsules, one drive per joint |
 | Sec. III | sphere of 5 cm | 80 g, friction 0.8 |
+| Sec. III b | S_L, S_R, S_M, S_F, S_T | the same order; the opposing finger is found from the contact normals and is always last |
 | Sec. III b | a fixed gait | a finger leaves only while the others keep a load margin of 0.1 N; contacts that let the thumb leave (0.4 N) are sought first |
 | Sec. III b | the free finger explores | for at most 1 s, within 4 mm of its first contact |
 | Sec. III b | fingers slide to new contacts | they hop back to where they first touched, then slide while they explore. By default they do not explore at all (`gait.mode` 1): turning is then faster |
 )";
-
-const Json& GroupOf(const Json& summary, const Json& wanted) {
-  for (const Json& group : summary.at("groups"))
-    if (std::all_of(wanted.items().begin(), wanted.items().end(), [&](const auto& item) {
-          return At(group, item.key().c_str()) == item.value();
-        }))
-      return group;
-  throw CliError(kFailed, fmt::format("the summary has no group {}", wanted.dump()));
-}
-
-std::string Share(int k, int n) {
-  const Interval interval = WilsonInterval(k, n);
-  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", k, n, 100 * interval.low, 100 * interval.high);
-}
-
-std::string Share(const Json& group, const char* count) {
-  return Share(group.at("counts").at(count).at("k").get<int>(), group.at("n").get<int>());
-}
 
 const char* Verdict(double share) {
   return share >= 1 ? "yes" : share >= kMostly ? "partly" : "no";
@@ -118,31 +101,6 @@ class Claims {
   std::string text_;
   std::map<std::string, int> verdicts_;
 };
-
-std::string CommandOf(const Json& summary) {
-  const Json& p = summary.at("experiment");
-  const auto list = [&p](const char* key) {
-    return fmt::format("{}", fmt::join(p.at(key).get<std::vector<std::string>>(), ","));
-  };
-  std::string text = "regrasp experiment " + Plain(p.at("experiment"));
-  if (p.contains("estimators")) text += " --estimator " + list("estimators");
-  if (p.contains("fingers") && p.at("fingers").size() == 1) text += " --finger " + list("fingers");
-  if (At(p, "rays") == 0) text += " --rays 0";
-  if (p.contains("turns")) {
-    const double turns = p.at("turns");
-    const bool whole = turns * kFewestSteps == std::round(turns * kFewestSteps);
-    text += whole ? fmt::format(" --turns {}", turns) : fmt::format(" --angle {:.6g}", 360 * turns);
-    text += p.at("axes").size() > 1 ? " --axis all" : " --axis=" + list("axes");
-    if (p.at("noise").size() > 1) text += " --noise " + list("noise");
-  }
-  for (const auto& [name, value] : p.at("set").items())
-    text += fmt::format(" --set {}={}", name, Plain(value));
-  text += fmt::format(" --seed {} -n {}", p.at("first_seed").get<std::int64_t>(),
-                      p.at("seeds").get<std::int64_t>());
-  if (p.contains("cases"))
-    for (const Json& c : p.at("cases")) text += fmt::format(" \\\n  --case '{}'", Plain(c));
-  return text + " -o DIR";
-}
 
 void AddFigure2(const Json& measured, Claims* claims) {
   const Json& f = At(measured, "figure2");
@@ -231,93 +189,6 @@ void AddRotation(const Json& summary, const std::string& claim, Claims* claims) 
   claims->Add(claim, measured, Verdict(group, "completed"), CommandOf(summary));
 }
 
-/// "−z" for "0,0,-1", else as it is.
-std::string AxisName(const std::string& axis) {
-  static const std::map<std::string, std::string> kNames = {{"1,0,0", "+x"}, {"-1,0,0", "−x"},
-                                                            {"0,1,0", "+y"}, {"0,-1,0", "−y"},
-                                                            {"0,0,1", "+z"}, {"0,0,-1", "−z"}};
-  const auto name = kNames.find(axis);
-  return name == kNames.end() ? axis : name->second;
-}
-
-/// What the rows of an experiment differ in.
-std::string RowName(const Json& plan, const Json& group) {
-  if (group.contains("case")) return Plain(group.at("case"));
-  if (plan.at("axes").size() > 1) return AxisName(Plain(group.at("axis_W")));
-  return Plain(group.at("noise"));
-}
-
-std::string RotationTable(const Json& summary) {
-  const Json& plan = summary.at("experiment");
-  const bool explores = std::any_of(
-      summary.at("groups").begin(), summary.at("groups").end(),
-      [](const Json& g) { return g.at("quantiles").at("phi_rise_share").at("n") != 0; });
-  std::string text = fmt::format(
-      "| | completed | dropped | stopped, object held | °/min, median | object off its place, most "
-      "| "
-      "slips, mean |{}\n|---|---|---|---|---|---|---|{}\n",
-      explores ? " φ rose | gain of φ |" : "", explores ? "---|---|" : "");
-  for (const Json& g : summary.at("groups")) {
-    const Json &counts = g.at("counts"), &quantiles = g.at("quantiles");
-    const auto number = [&counts](const char* name) {
-      return counts.contains(name) ? counts.at(name).at("k").get<int>() : 0;
-    };
-    const int stopped = number("failed") + number("refused") + number("unfinished");
-    const int ungrasped = number("not_grasped");
-    text +=
-        fmt::format("| {} | {} | {} | {} | {} | {} mm | {} |", RowName(plan, g),
-                    Share(g, "completed"), number("dropped"),
-                    fmt::format("{}{}", stopped,
-                                ungrasped > 0 ? fmt::format("; {} not grasped", ungrasped) : ""),
-                    Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
-                    Fixed(At(quantiles.at("max_position_error_m"), "max"), 1, 1e3),
-                    Fixed(At(quantiles.at("slips"), "mean"), 1));
-    if (explores)
-      text +=
-          fmt::format(" {} % | {} % |", Fixed(At(quantiles.at("phi_rise_share"), "mean"), 0, 100),
-                      Fixed(At(quantiles.at("phi_gain_mean"), "mean"), 1, 100));
-    text += "\n";
-  }
-  return text;
-}
-
-std::string ExplorationTable(const Json& summary) {
-  std::string text =
-      "| finger | estimator | φ rose | within 5 % of the best | gain, median | ended by the "
-      "gradient test | refused | dropped |\n|---|---|---|---|---|---|---|---|\n";
-  const auto number = [](const Json& g, const char* count) {
-    return g.at("counts").contains(count) ? g["counts"][count].at("k").get<int>() : 0;
-  };
-  for (const Json& g : summary.at("groups"))
-    text += fmt::format("| {} | {} | {} | {} | {} % | {} | {} | {} |\n", Plain(g.at("finger")),
-                        Plain(g.at("estimator")), Share(g, "rose"),
-                        g.at("counts").contains("near_best") ? Share(g, "near_best") : "–",
-                        Fixed(At(g.at("quantiles").at("phi_true_gain"), "median"), 1, 100),
-                        Share(g, "converged"), number(g, "refused"), number(g, "dropped"));
-  return text;
-}
-
-std::string SweepTable(const Json& summary, const char* count) {
-  const Json& plan = summary.at("experiment");
-  std::vector<std::string> fingers = plan.at("fingers");
-  if (fingers.size() > 1) fingers.push_back("all");
-  std::string text =
-      fmt::format("| noise | estimator | {} |\n|---|---|{}\n", fmt::join(fingers, " | "),
-                  fmt::join(std::vector<std::string>(fingers.size(), "---|"), ""));
-  for (const Json& noise : plan.at("noise"))
-    for (const Json& estimator : plan.at("estimators")) {
-      text += fmt::format("| {} | {} |", Plain(noise), Plain(estimator));
-      for (const auto& finger : fingers)
-        text += fmt::format(
-            " {} |",
-            Share(
-                GroupOf(summary, {{"noise", noise}, {"estimator", estimator}, {"finger", finger}}),
-                count));
-      text += "\n";
-    }
-  return text;
-}
-
 }  // namespace
 
 std::string ReproductionPage(const PaperResults& r) {
@@ -375,9 +246,8 @@ std::string ReproductionPage(const PaperResults& r) {
       "# Reproduction report\n\n"
       "Q. Li, R. Haschke, B. Bolder, H. Ritter, *Grasp Point Optimization for Unknown Object "
       "Manipulation in Hand Task*, claim by claim.\n\n"
-      "Measured on {} with regrasp {}, build {}, by `{}`, which wrote this page. Seeds {} to {} "
-      "were "
-      "never used while tuning; each varies the noise and the start. Intervals are Wilson's, 95 %. "
+      "Measured on {} with regrasp {}, build {}, by `{}`, which wrote this page. Seeds {} to {}{}; "
+      "each varies the noise and the start. Intervals are Wilson's, 95 %. "
       "A "
       "trial that was refused, dropped or not grasped is no success. *Noise-free* is from the "
       "simulator, which the controller never sees. What a trial and a column is: "
@@ -389,6 +259,8 @@ std::string ReproductionPage(const PaperResults& r) {
       r.date, Plain(plan.at("version")), Plain(plan.at("build")), r.command,
       plan.at("first_seed").get<std::int64_t>(),
       plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
+      plan.at("first_seed").get<std::int64_t>() >= kFirstFreshSeed ? " were never used while tuning"
+                                                                   : "",
       claims.Text(), 100 * kMostly, claims.Count());
   text += "## Figures\n";
   text +=
@@ -400,21 +272,26 @@ std::string ReproductionPage(const PaperResults& r) {
   text += "## Explorations\nNoise `paper`, criterion manipulability.\n\n" +
           ExplorationTable(exploration) + "\n";
   text += picture("exploration/summary.png", "Explorations of every finger");
+  text +=
+      "The best within reach is that of the rays of the [map](experiments.md) of each start: a "
+      "share above "
+      "100 % means that the exploration found its way to a place that no ray met.\n\n";
   text += "From starts whose fingertips are displaced by 3 mm along the surface:\n\n" +
           ExplorationTable(displaced) + "\n";
   text +=
       "## Success against noise\nNoise-free φ at the end within 5 % of the best within "
       "reach:\n\n" +
       SweepTable(sweep, "near_best") + "\nNoise-free φ rose:\n\n" + SweepTable(sweep, "rose") +
-      "\n";
+      "\nHow those that were not done ended, all fingers:\n\n" + OutcomeTable(sweep, every) + "\n";
   text += picture("sweep/summary.png", "Success against noise");
-  text +=
+  text += fmt::format(
       "## Rotations beyond the paper\n"
-      "One turn about −z at noise `paper` where nothing else is said. *Stopped*: the gait gave up "
+      "{} turn about −z at noise `paper` where nothing else is said. *Stopped*: the gait gave up "
       "or "
       "was refused, the object still in the hand. *Slips*: regrasps broken off. *φ rose*: of the "
       "regrasps that explored by manipulability and began below 98 % of the finger's best in that "
-      "rotation, in how many it was higher at the end.\n\n";
+      "rotation, in how many it was higher at the end.\n\n",
+      r.summaries.at("returning").at("experiment").at("turns").get<double>());
   for (const PaperPart& part : r.parts) {
     if (part.title.empty()) continue;
     const Json& summary = r.summaries.at(part.name);

@@ -64,10 +64,9 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
   plan->subjects = {"1,0,0", "-1,0,0", "0,1,0", "0,-1,0", "0,0,1", "0,0,-1"};
   plan = add(
       "one-motion", "How far one motion goes",
-      fmt::format(
-          "The local manipulation controller alone: {} degrees in one step of the gait. A finger "
-          "that comes to its limit regrasps on the way.",
-          kOneMotion_deg));
+      fmt::format("The local manipulation controller alone: {}° in one step of the gait. A finger "
+                  "that comes to its limit regrasps on the way.",
+                  kOneMotion_deg));
   plan->subjects = {"1,0,0", "-1,0,0", "0,1,0", "0,-1,0", "0,0,1", "0,0,-1"};
   plan->turns = kOneMotion_deg / 360;
   plan->common.set = {{"gait.step_rad", "0.6"}, {"gait.margin_wanted", "0"}};
@@ -83,31 +82,33 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
   plan = add("conditions", "Pushes, other objects, masses and friction",
              "Nothing is tuned for these. Pushes: each second for 0.1 s in a random direction. "
              "Returning gait.");
-  plan->cases =
-      Cases({"as the paper:", "pushes of 0.5 N: push=0.5", "pushes of 1 N: push=1",
-             "30 g: object.mass_kg=0.03", "150 g: object.mass_kg=0.15", "300 g: object.mass_kg=0.3",
-             "friction 0.4: object.friction=0.4", "friction 0.6: object.friction=0.6",
-             "friction 1: object.friction=1", "sphere of 4 cm: object=sphere_40mm",
-             "sphere of 4.5 cm: object=sphere_45mm", "sphere of 6 cm: object=sphere_60mm",
-             "egg: object=egg", "cube of 4 cm: object=cube_40mm"});
+  plan->cases = Cases(
+      {"sphere of 5 cm, 80 g, friction 0.8:", "pushes of 0.5 N: push=0.5", "pushes of 1 N: push=1",
+       "30 g: object.mass_kg=0.03", "150 g: object.mass_kg=0.15", "300 g: object.mass_kg=0.3",
+       "friction 0.4: object.friction=0.4", "friction 0.6: object.friction=0.6",
+       "friction 1: object.friction=1", "sphere of 4 cm: object=sphere_40mm",
+       "sphere of 4.5 cm: object=sphere_45mm", "sphere of 6 cm: object=sphere_60mm",
+       "egg: object=egg", "cube of 4 cm: object=cube_40mm",
+       "cube, no load margin: object=cube_40mm gait.margin_min=0 gait.margin_wanted=0",
+       "1 N, no load margin: push=1 gait.margin_min=0 gait.margin_wanted=0"});
   plan = add("long", "Longer and faster", "Five turns with either gait, and settings for speed.");
-  const double five = 5 * size.turns;
-  plan->cases = Cases({fmt::format("returning, 5 turns: turns={}", five),
-                       fmt::format("exploring, 5 turns: turns={} gait.mode=0", five),
-                       fmt::format("exploring, faster: turns={} gait.mode=0 gait.step_rad=0.349 "
-                                   "gait.lead=0.5 gait.explore_s=0.7",
-                                   five),
-                       "returning, fastest: gait.step_rad=0.5236 gait.lead=0.5 "
-                       "gait.speed_rad_s=0.7 gait.acceleration=8 "
-                       "gait.transfer_s=0.03 gait.lift_speed=0.1 gait.across_speed=0.15 "
-                       "gait.down_speed=0.05 gait.settle_s=0.05"});
-  plan = add("ablations", "Ablations", "The exploring gait without one of its parts.");
+  plan->cases = Cases(
+      {fmt::format("returning, 5 turns: turns={}", 5 * size.turns),
+       fmt::format("exploring, 5 turns: turns={} gait.mode=0", 5 * size.turns),
+       fmt::format("exploring, faster: turns={} gait.mode=0 gait.step_rad=0.349 gait.lead=0.5 "
+                   "gait.explore_s=0.7",
+                   2 * size.turns),
+       "returning, fastest: gait.step_rad=0.5236 gait.lead=0.5 gait.speed_rad_s=0.7 "
+       "gait.acceleration=8 gait.transfer_s=0.03 gait.lift_speed=0.1 gait.across_speed=0.15 "
+       "gait.down_speed=0.05 gait.settle_s=0.05"});
+  plan = add("ablations", "Ablations",
+             "The exploring gait without one of its parts, and a plain return to the first contact "
+             "in place of every exploration.");
   plan->common.set = {{"gait.mode", "0"}};
-  plan->cases =
-      Cases({"complete:", "no excursion bound: gait.disc_radius=0.02",
-             "no load margin: gait.margin_min=0 gait.margin_wanted=0",
-             "no load transfer: gait.transfer_s=0.001", "printed gradient rule: gait.estimator=0",
-             "slides, no hop: gait.hop=0", "plain return: gait.mode=1"});
+  plan->cases = Cases({"complete:", "no excursion bound: gait.disc_radius=0.02",
+                       "no load margin: gait.margin_min=0 gait.margin_wanted=0",
+                       "no load transfer: gait.transfer_s=0.001",
+                       "printed gradient rule: gait.estimator=0", "plain return: gait.mode=1"});
   for (PaperPart& part : parts) {
     part.plan.first_seed = size.seed;
     part.plan.models_dir = size.models_dir;
