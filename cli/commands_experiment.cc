@@ -146,6 +146,9 @@ std::vector<Arg> ExplorationArgs(const char* estimators) {
 std::vector<CommandSpec> ExperimentCommands() {
   Arg directories = Text("dir", "", "DIR...", "directories of the shards");
   directories.required = directories.repeated = true;
+  Arg only_paper = Text("only-paper", "--only-paper", "",
+                        "leave out what goes beyond the paper, and the ablations");
+  only_paper.kind = ArgKind::kFlag;
   return {
       {"experiment exploration", kGroup,
        "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
@@ -181,7 +184,7 @@ std::vector<CommandSpec> ExperimentCommands() {
         Text("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
         Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360,
                "12"),
-        Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        only_paper, Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N", "daemons at work", 1, 256,
                "one per core"),
         OutputDirectory()},

@@ -24,14 +24,6 @@ std::int64_t Integer(const Invocation& invocation, const char* key, const char* 
       ParseNumber(invocation.Text(key, otherwise), std::string("--") + key));
 }
 
-/// Runs what is left of one part and writes its results.
-Json Part(Context& context, Plan plan, int workers, const fs::path& directory,
-          const std::string& title) {
-  if (!context.options().quiet) fmt::print(stderr, "{}\n", title);
-  CompletePlan(&plan);
-  return RunExperiment(context, plan, workers, directory);
-}
-
 }  // namespace
 
 ExitCode Paper(Context& context, const Invocation& invocation) {
@@ -59,11 +51,15 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
                                             : ""};
   PaperResults results;
   results.parts = PaperParts(size);
+  if (invocation.Has("only-paper"))
+    std::erase_if(results.parts, [](const PaperPart& part) { return !part.title.empty(); });
+  // Whatever a daemon refuses is found before the first hour has passed.
+  for (PaperPart& part : results.parts) CompletePlan(&part.plan);
   std::size_t number = 0;
   for (const PaperPart& part : results.parts) {
-    const std::string title =
-        fmt::format("{} ({} of {})", part.name, ++number, results.parts.size());
-    results.summaries[part.name] = Part(context, part.plan, workers, data / part.name, title);
+    if (!context.options().quiet)
+      fmt::print(stderr, "{} ({} of {})\n", part.name, ++number, results.parts.size());
+    results.summaries[part.name] = RunExperiment(context, part.plan, workers, data / part.name);
   }
 
   if (!context.options().quiet) fmt::print(stderr, "figures, {} repetitions\n", repeats);
@@ -82,6 +78,13 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   results.command =
       fmt::format("regrasp experiment paper --seed {} -n {} --repeats {} --turns {} -o DIR", seed,
                   seeds, repeats, turns);
+  for (const char* flag : {"finger", "rays"})
+    if (invocation.Has(flag)) {
+      const std::string given = fmt::format(" --{} {}", flag, invocation.Text(flag));
+      results.command.insert(results.command.rfind(" -o "), given);
+    }
+  if (invocation.Has("only-paper"))
+    results.command.insert(results.command.rfind(" -o "), " --only-paper");
   results.data = "reproduction";
   const fs::path page = output / "reproduction.md";
   WriteFile(page, ReproductionPage(results));

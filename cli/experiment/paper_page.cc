@@ -284,14 +284,17 @@ std::string ReproductionPage(const PaperResults& r) {
       SweepTable(sweep, "near_best") + "\nNoise-free φ rose:\n\n" + SweepTable(sweep, "rose") +
       "\nHow those that were not done ended, all fingers:\n\n" + OutcomeTable(sweep, every) + "\n";
   text += picture("sweep/summary.png", "Success against noise");
-  text += fmt::format(
-      "## Rotations beyond the paper\n"
-      "{} turn about −z at noise `paper` where nothing else is said. *Stopped*: the gait gave up "
-      "or "
-      "was refused, the object still in the hand. *Slips*: regrasps broken off. *φ rose*: of the "
-      "regrasps that explored by manipulability and began below 98 % of the finger's best in that "
-      "rotation, in how many it was higher at the end.\n\n",
-      r.summaries.at("returning").at("experiment").at("turns").get<double>());
+  if (std::any_of(r.parts.begin(), r.parts.end(),
+                  [](const PaperPart& part) { return !part.title.empty(); }))
+    text += fmt::format(
+        "## Rotations beyond the paper\n"
+        "{} turn about −z at noise `paper` where nothing else is said. *Stopped*: the gait gave up "
+        "or "
+        "was refused, the object still in the hand. *Slips*: regrasps broken off. *φ rose*: of the "
+        "regrasps that explored by manipulability and began below 98 % of the finger's best in "
+        "that "
+        "rotation, in how many it was higher at the end.\n\n",
+        r.summaries.at("returning").at("experiment").at("turns").get<double>());
   for (const PaperPart& part : r.parts) {
     if (part.title.empty()) continue;
     const Json& summary = r.summaries.at(part.name);

@@ -72,10 +72,11 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
   plan->common.set = {{"gait.step_rad", "0.6"}, {"gait.margin_wanted", "0"}};
   plan = add("noise", "Rotation against noise", "Every preset of sensor noise, returning gait.");
   plan->noise = {"off", "fine", "paper", "coarse", "taxel"};
-  plan = add("tilt", "Tilt of the hand",
-             "0 degrees: palm up; 90: fingers down; all else here is at 65. Returning gait. "
-             "Without the search for contacts "
-             "that let the thumb leave (the paper's S_F), it should be refused, not dropped.");
+  plan =
+      add("tilt", "Tilt of the hand",
+          "0°: palm up; 90°: fingers down; all else here is at 65°. Returning gait. The last row "
+          "leaves out "
+          "the search for contacts that let the thumb leave, which comes before the first motion.");
   plan->cases = Cases({"tilt 0: tilt=0", "tilt 15: tilt=15", "tilt 30: tilt=30", "tilt 45: tilt=45",
                        "tilt 60: tilt=60", "tilt 75: tilt=75", "tilt 90: tilt=90",
                        "tilt 45, no search: tilt=45 gait.max_shift=0"});
@@ -97,7 +98,7 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
        fmt::format("exploring, 5 turns: turns={} gait.mode=0", 5 * size.turns),
        fmt::format("exploring, faster: turns={} gait.mode=0 gait.step_rad=0.349 gait.lead=0.5 "
                    "gait.explore_s=0.7",
-                   2 * size.turns),
+                   size.turns),
        "returning, fastest: gait.step_rad=0.5236 gait.lead=0.5 gait.speed_rad_s=0.7 "
        "gait.acceleration=8 gait.transfer_s=0.03 gait.lift_speed=0.1 gait.across_speed=0.15 "
        "gait.down_speed=0.05 gait.settle_s=0.05"});

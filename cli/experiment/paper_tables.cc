@@ -14,6 +14,7 @@
 namespace regrasp::cli {
 namespace {
 
+constexpr int kRays = 12;       // the default
 constexpr double kParts = 100;  // a number of turns with two decimals is written as turns
 
 /// "−z" for "0,0,-1", else as it is.
@@ -65,7 +66,7 @@ std::string CommandOf(const Json& summary) {
   std::string text = "regrasp experiment " + Plain(p.at("experiment"));
   if (p.contains("estimators")) text += " --estimator " + list("estimators");
   if (p.contains("fingers") && p.at("fingers").size() == 1) text += " --finger " + list("fingers");
-  if (At(p, "rays") == 0) text += " --rays 0";
+  if (p.contains("rays") && p.at("rays") != kRays) text += " --rays " + Plain(p.at("rays"));
   if (p.contains("turns")) {
     const double turns = p.at("turns");
     const bool whole = turns * kParts == std::round(turns * kParts);

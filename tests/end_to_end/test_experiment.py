@@ -180,12 +180,23 @@ class Cases(ExperimentCase):
 
 
 class Paper(ExperimentCase):
+    SMALL_PAPER = ["paper", "-n", "1", "--repeats", "1", "--turns", "0.1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models"]
+
+    def test_every_part_is_accepted_before_the_first_runs(self):
+        words = [REGRASP, "experiment", *self.SMALL_PAPER, "-o", self.dir / "cut"]
+        with subprocess.Popen(list(map(str, words)), env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            first = process.stderr.readline()
+            self.assertEqual(first, "exploration (1 of 12)\n")
+            process.send_signal(signal.SIGINT)
+            _, stderr = process.communicate(timeout=HANG_S)
+        self.assertEqual(process.returncode, 130, stderr)
+
     def test_one_command_writes_the_page(self):
-        self.run_experiment("paper", "-n", "1", "--repeats", "1", "--turns", "0.1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models", "-o", self.dir)
+        self.run_experiment(*self.SMALL_PAPER, "--only-paper", "-o", self.dir)
         page = (self.dir / "reproduction.md").read_text()
         for picture in re.findall(r"\]\((reproduction/[^)]*\.png)\)", page):
             self.assertTrue((self.dir / picture).read_bytes().startswith(b"\x89PNG"), picture)
-        for figure in ("figure1.png", "figure2.png", "figure3a.png", "figure3b.png", "sweep/summary.png", "tilt/summary.png", "ablations/summary.png"):
+        for figure in ("figure1.png", "figure2.png", "figure3a.png", "figure3b.png", "sweep/summary.png"):
             self.assertIn(f"(reproduction/{figure})", page)
         claims = [line.split(" | ") for line in page.splitlines() if line.startswith("| ") and line.endswith((" yes |", " partly |", " no |"))]
         self.assertGreaterEqual(len(claims), 12)
