@@ -44,7 +44,7 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   const PaperSize size = {.seed = seed,
                           .seeds = seeds,
                           .finger = invocation.Text("finger", "all"),
-                          .rays = static_cast<int>(Integer(invocation, "rays", "12")),
+                          .rays = static_cast<int>(Integer(invocation, "rays", "8")),
                           .turns = turns,
                           .models_dir = invocation.Has("models-dir")
                                             ? fs::absolute(invocation.Text("models-dir")).string()
