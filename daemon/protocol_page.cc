@@ -90,7 +90,7 @@ std::string ProtocolPage() {
       "`id, method, state` (`queued`, `running`, `done`, `failed`, `cancelled`)`, error, progress` "
       "(0 ... 1)`, "
       "start_tick, end_tick, finished`. An `explore` job adds `finger, criterion, estimator, seed, "
-      "converged, reason` (`gradient`, `max_cycles`, `contact_lost`, `dropped`, `cancelled`)`, "
+      "converged, reason` (`gradient`, `max_cycles`, `contact_lost`, `dropped`, `cancelled`, `object_moved`)`, "
       "cycles, "
       "phi_initial, phi_final, phi_true_initial, phi_true_final, path_length_m`; the two "
       "`phi_true` are "

@@ -8,19 +8,17 @@ namespace regrasp {
 namespace {
 
 constexpr double kSettle_s = 0.15;
-constexpr double kRemember_s =
-    0.15;  // low pass on phi and position before a best point is believed
-constexpr double kWorthReturning = 1.005;
 constexpr double kLittleGain = 1.02;
 constexpr int kMaxTries = 3;
 constexpr double kReturnGain = 8.0;  // 1/s
-constexpr double kReturned_m = 0.0005;
+constexpr double kReturned_m = 0.0002;
 constexpr double kReturnLimit_s = 2.5;
 constexpr double kForceShare = 0.5;
 constexpr double kLeastForce = 0.5;  // of exploration.normal_force
 constexpr double kObjectError_m =
     0.002;  // the finger slows down beyond this error of the object ...
 constexpr double kObjectStop_m = 0.003;  // ... and waits beyond this one
+constexpr double kWait_s = 0.3;          // waiting for so long ends the exploration
 constexpr double kLost_s = 0.30;         // sliding without contact for so long ends the exploration
 
 int MaxCycles(const FingerExploration::Request& request, const ExplorationParameters& parameters) {
@@ -42,19 +40,8 @@ void FingerExploration::EnterPhase(Phase phase) {
   ticks_ = 0;
 }
 
-void FingerExploration::Remember(const Estimate& estimate, double dt) {
-  const FingerEstimate& finger = estimate.fingers[request_.finger];
-  const Vector3d p_OC = estimate.q_WO.conjugate() * (finger.p_WC - estimate.p_WO);
-  const double gain = dt / (kRemember_s + dt);
-  phi_smooth_ += gain * (phi_ - phi_smooth_);
-  p_OC_smooth_ += gain * (p_OC - p_OC_smooth_);
-  if (phi_smooth_ <= phi_best_) return;
-  phi_best_ = phi_smooth_;
-  p_OC_best_ = p_OC_smooth_;
-}
-
 bool FingerExploration::TryAgain(const ExplorationParameters& parameters) const {
-  return tries_ + 1 < kMaxTries && phi_best_ < kLittleGain * phi_initial_ &&
+  return tries_ + 1 < kMaxTries && best_.phi() < kLittleGain * phi_initial_ &&
          2 * cycles() < MaxCycles(request_, parameters);
 }
 
@@ -116,8 +103,8 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
       stop_ = false;
     } else if (ticks_ * dt >= kSettle_s) {
       EnterPhase(Phase::kSlide);
-      phi_initial_ = phi_final_ = phi_smooth_ = phi_best_ = phi_;
-      p_OC_smooth_ = p_OC_best_ = estimate.q_WO.conjugate() * (finger.p_WC - estimate.p_WO);
+      phi_initial_ = phi_final_ = phi_;
+      best_.Start(finger.p_WC, phi_);
       slide_began_ = true;
       algorithm_.Start(input, request_.estimator, request_.seed, request_.max_cycles, parameters);
     }
@@ -132,9 +119,14 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
   const double object_error = (controller->wrench().p_ref() - estimate.p_WO).norm();
   const double patience =
       std::clamp((kObjectStop_m - object_error) / (kObjectStop_m - kObjectError_m), 0.0, 1.0);
+  waited_ = patience > 0 ? 0 : waited_ + 1;
+  if (waited_ * dt > kWait_s) {
+    end_ = End::kObjectMoved;
+    EndSlide(estimate, controller);
+    return;
+  }
   if (phase_ == Phase::kReturn) {
-    const Vector3d p_best_W = estimate.p_WO + estimate.q_WO * p_OC_best_;
-    const Vector3d error = TangentPart(p_best_W - finger.p_WC, finger.normal_W);
+    const Vector3d error = TangentPart(best_.p_WC() - finger.p_WC, finger.normal_W);
     const double distance = error.norm();
     if (distance < kReturned_m || ticks_ * dt > kReturnLimit_s) {
       if (TryAgain(parameters)) {
@@ -154,7 +146,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     return;
   }
 
-  Remember(estimate, dt);
+  best_.Add(finger.p_WC, phi_, dt);
   const SurfaceExploration::Status status = algorithm_.Update(input, parameters, dt);
   if (status == SurfaceExploration::Status::kRunning) {
     task.v_W = patience * algorithm_.velocity_W();
@@ -162,7 +154,7 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
   }
   end_ = status == SurfaceExploration::Status::kConverged ? End::kGradient : End::kMaxCycles;
   if (request_.estimator == Estimator::kLeastSquares &&
-      (phi_best_ > kWorthReturning * phi_smooth_ || TryAgain(parameters))) {
+      (best_.worth_returning() || TryAgain(parameters))) {
     EnterPhase(Phase::kReturn);
   } else {
     EndSlide(estimate, controller);
@@ -178,11 +170,11 @@ void FingerExploration::AddTo(StateHasher* hasher) const {
   hasher->Add(request_.criterion);
   hasher->Add(on_stability_);
   hasher->Add(slide_force_);
+  hasher->Add(waited_);
   hasher->Add(tries_);
   hasher->Add(cycles_before_);
   hasher->Add(phi_initial_);
-  hasher->Add(phi_best_);
-  hasher->Add(p_OC_best_);
+  best_.AddTo(hasher);
   algorithm_.AddTo(hasher);
 }
 

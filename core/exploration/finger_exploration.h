@@ -3,6 +3,7 @@
 /// One finger explores while the others hold: load transfer, Algorithm 1, and back into the grasp.
 
 #include "core/control/hybrid_controller.h"
+#include "core/exploration/best_contact.h"
 #include "core/exploration/objective.h"
 #include "core/exploration/surface_exploration.h"
 
@@ -20,7 +21,13 @@ class FingerExploration {
     kReload,  ///< its force ramps up again
     kDone,
   };
-  enum class End : std::uint8_t { kNone, kGradient, kMaxCycles, kContactLost };
+  enum class End : std::uint8_t {
+    kNone,
+    kGradient,
+    kMaxCycles,
+    kContactLost,
+    kObjectMoved,  ///< the others could not carry what the finger dragged
+  };
 
   struct Request {
     int finger = -1;
@@ -59,8 +66,6 @@ class FingerExploration {
 
  private:
   void EnterPhase(Phase phase);
-  /// Low-passes phi and the contact point and remembers where phi was best, in the object's frame.
-  void Remember(const Estimate& estimate, double dt);
   /// Whether another try is due: little was gained and at least half of N_max is left.
   bool TryAgain(const ExplorationParameters& parameters) const;
   void EndSlide(const Estimate& estimate, HybridController* controller);
@@ -68,14 +73,14 @@ class FingerExploration {
   Request request_;
   Phase phase_ = Phase::kIdle;
   int ticks_ = 0;                      // in this phase
+  int waited_ = 0;                     // ticks in a row with the object too far off its place
   int tries_ = 0, cycles_before_ = 0;  // of Algorithm 1; cycles of the tries before this one
   bool stop_ = false, slide_began_ = false, slide_ended_ = false;
   bool on_stability_ = false;
   End end_ = End::kNone;
   double slide_force_ = 0.4;  // normal force of this exploration [N]
   double phi_ = 0, phi_initial_ = 0, phi_final_ = 0;
-  double phi_smooth_ = 0, phi_best_ = 0;
-  Vector3d p_OC_smooth_ = Vector3d::Zero(), p_OC_best_ = Vector3d::Zero();
+  BestContact best_;
   SurfaceExploration algorithm_;
 };
 

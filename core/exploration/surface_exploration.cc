@@ -17,6 +17,7 @@ Vector3d LimitNorm(const Vector3d& v, double limit) {
 constexpr double kRidge = 2e-8;  // m²
 // Rate at which a finger backs out of a wall.
 constexpr double kWallReturn = 5.0;  // 1/s
+constexpr double kSameWall = 0.7;    // cosine between two walls that are taken for the same one
 
 }  // namespace
 
@@ -28,8 +29,17 @@ Vector3d SurfaceExploration::FreeGradient(const Input& input,
   if (distance > parameters.max_excursion)
     gradient -= std::max(0.0, gradient.dot(excursion) / distance) * excursion / distance;
   for (const Wall& wall : input.walls)
-    gradient -= std::max(0.0, gradient.dot(wall.direction_W)) * wall.direction_W;
+    if (Depth(wall) >= 0)
+      gradient -= std::max(0.0, gradient.dot(wall.direction_W)) * wall.direction_W;
   return gradient;
+}
+
+double SurfaceExploration::Depth(const Wall& wall) const {
+  double allowed = 0;
+  for (const Wall& start : walls_start_)
+    if (!wall.must_leave && start.direction_W.dot(wall.direction_W) > kSameWall)
+      allowed = std::max(allowed, start.depth);
+  return wall.depth - allowed;
 }
 
 void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uint64_t seed,
@@ -39,6 +49,7 @@ void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uin
   random_ = RandomStream(seed, 0);
   max_cycles_ = max_cycles > 0 ? max_cycles : static_cast<int>(parameters.max_cycles);
   p_WC_start_ = p_WC_prev_ = input.p_WC;
+  walls_start_ = input.walls;
   phi_prev_ = input.phi;
   const Matrix3d R_WC = RotationFromZ(input.normal_W);
   const double sigma = parameters.sigma * parameters.gradient_max;
@@ -78,13 +89,17 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   const double norm = tangent.norm();
   velocity_W_.setZero();
   if (norm > 1e-9) {  // line 11
-    const double speed =
-        std::clamp(parameters.eta * norm, parameters.speed_min, parameters.speed_max);
+    // The dither keeps the finger moving anyway: what is left of a gradient that counts as
+    // converged is mostly noise, and is followed the less the smaller it is.
+    const double least = least_squares
+                             ? parameters.speed_min * std::min(1.0, norm / parameters.epsilon)
+                             : parameters.speed_min;
+    const double speed = std::min(std::max(parameters.eta * norm, least), parameters.speed_max);
     velocity_W_ = tangent * (speed / norm);
   }
   for (const Wall& wall : input.walls)
     velocity_W_ -=
-        std::min(0.5 * parameters.speed_min, kWallReturn * wall.depth) * wall.direction_W;
+        std::clamp(kWallReturn * Depth(wall), 0.0, 0.5 * parameters.speed_min) * wall.direction_W;
   if (least_squares) {
     const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;
     velocity_W_ +=
@@ -101,6 +116,7 @@ void SurfaceExploration::AddTo(StateHasher* hasher) const {
   hasher->Add(max_cycles_);
   hasher->Add(small_updates_);
   hasher->Add(p_WC_start_);
+  for (const Wall& wall : walls_start_) hasher->Add(wall.depth);
   hasher->Add(p_WC_prev_);
   hasher->Add(phi_prev_);
   hasher->Add(gradient_W_);

@@ -15,7 +15,7 @@
 ///
 /// Departures from the print, each with its reason:
 ///  - line 2: the start is tangential, sigma scaled by gradient_max so that it is of phi's own
-///  magnitude.
+///    magnitude. The gait starts from the gradient of the finger's last exploration (StartFrom).
 ///  - line 3: the test must hold for `converged_updates` consecutive updates; an instantaneous one
 ///  ends
 ///    runs whose estimate merely crosses zero.
@@ -25,6 +25,7 @@
 ///  and at
 ///    another finger (walls) the part of the gradient that points on is removed, from the motion
 ///    and from the test: a constrained maximum counts as converged.
+///    Where the finger starts beyond a wall that it may stay at, the wall stands where it started.
 ///  - line 11: the displacement is per second, limited to [speed_min, speed_max].
 /// The class knows nothing of the hand: it turns contact points and values of phi into velocities.
 
@@ -40,6 +41,8 @@ namespace regrasp {
 struct Wall {
   Vector3d direction_W = Vector3d::Zero();  ///< unit tangent, into the wall
   double depth = 0;                         ///< how far the contact is beyond it, >= 0 [m]
+  bool must_leave =
+      false;  ///< a finger that starts beyond it is pushed out, else it may stay there
 };
 
 class SurfaceExploration {
@@ -57,6 +60,8 @@ class SurfaceExploration {
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.
   void Start(const Input& input, Estimator estimator, std::uint64_t seed, int max_cycles,
              const ExplorationParameters& parameters);
+  /// Replaces the random start of line 2 by what is known of the gradient, in W [1/m].
+  void StartFrom(const Vector3d& gradient_W) { gradient_W_ = gradient_W; }
   /// One pass of the loop. dt: [s] per cycle.
   Status Update(const Input& input, const ExplorationParameters& parameters, double dt);
 
@@ -72,6 +77,9 @@ class SurfaceExploration {
  private:
   /// The part of the gradient along which the finger may move, in W [1/m].
   Vector3d FreeGradient(const Input& input, const ExplorationParameters& parameters) const;
+  /// How far the finger is beyond a wall, or beyond where it started if that was beyond the wall
+  /// too; below 0 the wall is not reached [m].
+  double Depth(const Wall& wall) const;
 
   Estimator estimator_ = Estimator::kLeastSquares;
   RandomStream random_;
@@ -81,6 +89,7 @@ class SurfaceExploration {
   int updates_ = 0;
   int small_updates_ = 0;  // consecutive, with the gradient below epsilon
   Vector3d p_WC_start_ = Vector3d::Zero(), p_WC_prev_ = Vector3d::Zero();
+  FixedVector<Wall, 8> walls_start_;
   double phi_prev_ = 0;
   Vector3d gradient_W_ = Vector3d::Zero();
   double gradient_norm_ = 0;

@@ -11,6 +11,9 @@ struct Capsule {
   double radius = 0;
 };
 
+constexpr double kTouching = 1e-6;  // m: nearer axes have no direction between them
+constexpr double kLeastRate = 0.2;  // links that near each other more slowly are no wall
+
 bool CapsuleOf(const HandModel& hand, const Estimate& estimate, int link, Capsule* capsule) {
   for (const Shape& shape : hand.links[link].shapes) {
     if (shape.kind != Shape::Kind::kCapsule) continue;
@@ -21,13 +24,16 @@ bool CapsuleOf(const HandModel& hand, const Estimate& estimate, int link, Capsul
   return false;
 }
 
-/// Closest points of two segments [Ericson 2005, Sec. 5.1.9]; returns from the first to the second.
-Vector3d BetweenSegments(const Capsule& one, const Capsule& two) {
+/// Closest points of the axes of two capsules [Ericson 2005, Sec. 5.1.9].
+struct Closest {
+  Vector3d on_one, on_two;
+};
+Closest BetweenSegments(const Capsule& one, const Capsule& two) {
   const Vector3d d1 = one.b - one.a, d2 = two.b - two.a, r = one.a - two.a;
   const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r);
   double s = 0, t = 0;
   constexpr double kPoint = 1e-12;  // m²: shorter segments are points
-  if (a <= kPoint && e <= kPoint) return -r;
+  if (a <= kPoint && e <= kPoint) return {one.a, two.a};
   if (a <= kPoint) {
     t = std::clamp(f / e, 0.0, 1.0);
   } else {
@@ -44,15 +50,15 @@ Vector3d BetweenSegments(const Capsule& one, const Capsule& two) {
       }
     }
   }
-  return (two.a + t * d2) - (one.a + s * d1);
+  return {one.a + s * d1, two.a + t * d2};
 }
 
 /// `direction`: of contact motion, any length; `depth` [m] along it.
 void AddWall(const Vector3d& direction, double depth, const Vector3d& normal,
-             FixedVector<Wall, 8>* walls) {
+             FixedVector<Wall, 8>* walls, bool must_leave = false) {
   const Vector3d tangent = TangentPart(direction, normal);
   const double share = tangent.norm() / direction.norm();
-  if (share > 0.2) walls->push_back({tangent.normalized(), depth / share});
+  if (share > 0.2) walls->push_back({tangent.normalized(), depth / share, must_leave});
 }
 
 }  // namespace
@@ -88,7 +94,8 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
         const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));
         rate += estimate.kinematics.axis_W[model.joints[k]].cross(d).dot(n) * row;
       }
-      AddWall(rate, (facing - parameters.least_facing) / rate.norm(), n, walls);
+      constexpr bool kMustLeave = true;  // the finger would roll off over the side of its link
+      AddWall(rate, (facing - parameters.least_facing) / rate.norm(), n, walls, kMustLeave);
     }
   }
   const auto Before = [&](int link) {
@@ -101,11 +108,22 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
       if (i == finger) continue;
       for (int link : {tip, Before(tip)}) {
         if (!CapsuleOf(hand, estimate, link, &other)) continue;
-        const Vector3d between = BetweenSegments(own, other);
-        const double depth = own.radius + other.radius + parameters.clearance - between.norm();
-        // Moving the tip hardly frees the link before it: that one is only kept from going on.
-        if (depth > 0)
-          AddWall(between, own_link == model.tip_link ? depth : 0.0, f.normal_W, walls);
+        const Closest closest = BetweenSegments(own, other);
+        const Vector3d between = closest.on_two - closest.on_one;
+        const double distance = between.norm();
+        const double depth = own.radius + other.radius + parameters.clearance - distance;
+        if (depth <= 0 || distance < kTouching) continue;
+        // How fast the links near each other, per contact velocity: the joints that move the own
+        // link, with q' = J⁺ v.
+        Vector3d rate = Vector3d::Zero();
+        for (std::size_t k = 0; k < model.joints.size(); ++k) {
+          const int j = model.joints[k];
+          const Vector3d v =
+              estimate.kinematics.axis_W[j].cross(closest.on_one - estimate.kinematics.p_WJ[j]);
+          rate += v.dot(between) / distance * (inverse * f.J.col(static_cast<Eigen::Index>(k)));
+          if (hand.joints[j].child_link == own_link) break;
+        }
+        if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), f.normal_W, walls);
       }
     }
   }

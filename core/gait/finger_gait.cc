@@ -102,6 +102,7 @@ void FingerGait::Remember(int finger, const Estimate& estimate, const ObjectWren
   found += kFoundShare * (shift - found);
   const double limit = kInsideDisc * parameters.disc_radius;
   if (found.norm() > limit) found *= limit / found.norm();
+  gradient_[finger] = regrasp_.algorithm().gradient_W();
 }
 
 void FingerGait::StartMotion(const GaitParameters& parameters) {
@@ -193,6 +194,7 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
       request.criterion = Criterion::kStability;
       request.without = order_[pick + 1].finger;
     }
+    request.gradient_W = gradient_[step.finger];
     regrasp_.Start(request);
     happened_.regrasp_began = true;
     Enter(GaitPhase::kRegrasp);
@@ -358,6 +360,7 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   for (double margin : smooth_.without) hasher->Add(margin);
   search_.AddTo(hasher);
   for (const Vector3d& found : found_) hasher->Add(found);
+  for (const Vector3d& gradient : gradient_) hasher->Add(gradient);
   for (double lead : lead_) hasher->Add(lead);
   for (const StanceContact& contact : home_stance_) hasher->Add(contact.p_OF);
   manipulation_.AddTo(hasher);

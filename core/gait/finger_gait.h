@@ -117,6 +117,8 @@ class FingerGait {
   // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The
   // next exploration of the finger goes there from the first contact, then Algorithm 1 takes over.
   std::array<Vector3d, kMaxFingers> found_{};
+  // The gradient with which its last exploration ended, in W [1/m]; zero: none yet.
+  std::array<Vector3d, kMaxFingers> gradient_{};
   // By how much each finger's target is turned back about the axis: half of what a motion that
   // ended at this finger's limit still wanted is added, so that it has more way the next time
   // [rad].

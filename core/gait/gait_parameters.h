@@ -16,9 +16,9 @@ struct GaitParameters {
   double hop = 1;      ///< 1: a finger hops to its target, 0: it slides
   // Object motion.
   double speed_rad_s = 0.3490658504;  ///< object speed during its motion phase (20 deg/s)
-  double acceleration = 3.0;          ///< of that speed [rad/s²]
-  double step_rad = 0.2617993878;     ///< object motion between regrasps (15 deg)
-  double settle_s = 0.10;             ///< after it, before the first finger leaves
+  double acceleration = 8.0;          ///< of that speed [rad/s²]
+  double step_rad = 0.3490658504;     ///< object motion between regrasps (20 deg)
+  double settle_s = 0.05;             ///< after it, before the first finger leaves
   double limit_margin = 0.03;         ///< the motion ends with a joint this near to its limit [rad]
   double min_manipulability =
       0.25;  ///< ... with a finger below this share of its first manipulability
@@ -33,23 +33,23 @@ struct GaitParameters {
   double max_shift = 0.006;       ///< ... so far from the present ones [m]
   double skip_distance = 0.0012;  ///< a finger this near to its target stays [m]
   // Leaving and coming back.
-  double transfer_s = 0.05;    ///< load transfer before a finger leaves, and after it is back [s]
+  double transfer_s = 0.03;    ///< load transfer before a finger leaves, and after it is back [s]
   double hop_force = 0.05;     ///< its force when it leaves [N]
   double lift_height = 0.003;  ///< along the outward normal [m]
-  double lift_speed = 0.06;    ///< [m/s]
-  double across_speed = 0.08;  ///< [m/s]
-  double down_speed = 0.03;    ///< [m/s]
+  double lift_speed = 0.10;    ///< [m/s]
+  double across_speed = 0.15;  ///< [m/s]
+  double down_speed = 0.05;    ///< [m/s]
   double slide_force = 0.3;    ///< normal force of a sliding finger [N]
   double slide_gain = 8.0;     ///< sliding speed per distance [1/s]
   double slide_speed = 0.015;  ///< highest [m/s]
-  double lead = 0.0;           ///< target ahead of the first contact, in shares of the next step
+  double lead = 0.5;           ///< target ahead of the first contact, in shares of the next step
   // Disturbances.
   double abort_position = 0.003;         ///< object error at which a regrasp is broken off [m]
   double abort_rotation = 0.2094395102;  ///< (12 deg)
   // Exploring.
   double disc_radius =
       0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
-  double explore_s = 1.0;  ///< longest exploration per regrasp [s]
+  double explore_s = 0.5;  ///< longest exploration per regrasp [s]
   double estimator = 1;    ///< of its gradient: 1 least squares, 0 the printed rule (Estimator)
 };
 

@@ -15,7 +15,8 @@ constexpr double kClear = 0.001;    // across: after so far a touch is an obstac
 constexpr double kLost_s = 1.0;     // a finger that reloads without contact for so long is lost
 constexpr double kSlideArrived = 0.0005;  // [m]
 constexpr double kSlideLimit_s = 2.5;
-constexpr double kRecallLimit_s = 0.6;
+constexpr double kReturned = 0.0003;    // [m]
+constexpr double kRecallLimit_s = 0.6;  // of the slides to the last end and to the best contact
 constexpr double kSettle_s = 0.08;
 constexpr double kDiscReturn =
     1.0;  // share of the excess over the disc that counts as a wall's depth
@@ -43,6 +44,8 @@ std::string_view Name(Regrasp::Phase phase) {
       return "recall";
     case Phase::kExplore:
       return "explore";
+    case Phase::kReturn:
+      return "return";
     case Phase::kReload:
       return "reload";
     case Phase::kDone:
@@ -93,37 +96,49 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
   FindWalls(hand, estimate, request_.finger, exploration, &input.walls);
   const Vector3d out = TangentPart(finger.p_WC - target.p_WC, finger.normal_W);
   const double excess = out.norm() - parameters.disc_radius;
-  if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess});
+  if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess, true});
 
   if (phase_ == Phase::kSettle) {
     if (ticks_ * dt < kSettle_s) return;
     explore_began_ = true;
+    best_.Start(finger.p_WC, phi_);
     Enter(Phase::kRecall);
     return;
   }
-  if (phase_ == Phase::kRecall && !abort_) {
-    const Vector3d error = TangentPart(target.p_WR - finger.p_WC, finger.normal_W);
-    const double distance = error.norm();
-    if (distance < kSlideArrived || ticks_ * dt > kRecallLimit_s) {
-      algorithm_.Start(input, static_cast<Estimator>(static_cast<int>(parameters.estimator)),
-                       request_.seed, 0, exploration);
-      Enter(Phase::kExplore);
-    } else {
-      task->v_W = error * std::min(parameters.slide_gain, parameters.slide_speed / distance);
-      for (const Wall& wall : input.walls)
-        task->v_W -= std::max(0.0, task->v_W.dot(wall.direction_W)) * wall.direction_W;
-    }
-    return;
-  }
   const bool lost = finger.ticks_without_contact * dt > 0.1;
-  const bool over = ticks_ * dt > parameters.explore_s;
-  if (abort_ || lost || over ||
-      algorithm_.Update(input, exploration, dt) != SurfaceExploration::Status::kRunning) {
+  const auto End = [&] {
     explore_ended_ = true;
     Enter(Phase::kReload);
+  };
+  if (abort_ || lost) return End();
+  best_.Add(finger.p_WC, phi_, dt);
+  if (phase_ == Phase::kExplore) {
+    const bool over = ticks_ * dt > parameters.explore_s;
+    if (!over && algorithm_.Update(input, exploration, dt) == SurfaceExploration::Status::kRunning)
+      task->v_W = algorithm_.velocity_W();
+    else if (best_.worth_returning())
+      Enter(Phase::kReturn);
+    else
+      End();
     return;
   }
-  task->v_W = algorithm_.velocity_W();
+
+  const bool recall = phase_ == Phase::kRecall;
+  const Vector3d& to = recall ? target.p_WR : best_.p_WC();
+  const Vector3d error = TangentPart(to - finger.p_WC, finger.normal_W);
+  const double distance = error.norm();
+  if (distance >= (recall ? kSlideArrived : kReturned) && ticks_ * dt <= kRecallLimit_s) {
+    task->v_W = error * std::min(parameters.slide_gain, parameters.slide_speed / distance);
+    for (const Wall& wall : input.walls)
+      task->v_W -= std::max(0.0, task->v_W.dot(wall.direction_W)) * wall.direction_W;
+  } else if (recall) {
+    algorithm_.Start(input, static_cast<Estimator>(static_cast<int>(parameters.estimator)),
+                     request_.seed, 0, exploration);
+    if (!request_.gradient_W.isZero()) algorithm_.StartFrom(request_.gradient_W);
+    Enter(Phase::kExplore);
+  } else {
+    End();
+  }
 }
 
 void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Target& target,
@@ -216,6 +231,7 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
     case Phase::kSettle:
     case Phase::kRecall:
     case Phase::kExplore:
+    case Phase::kReturn:
       Explore(hand, estimate, target, grasp, control, exploration, parameters, dt, &task);
       break;
 
@@ -251,6 +267,7 @@ void Regrasp::AddTo(StateHasher* hasher) const {
   hasher->Add(path_);
   hasher->Add(phi_);
   hasher->Add(on_stability_);
+  best_.AddTo(hasher);
   algorithm_.AddTo(hasher);
 }
 

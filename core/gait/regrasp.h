@@ -5,6 +5,7 @@
 /// back.
 
 #include "core/control/hybrid_controller.h"
+#include "core/exploration/best_contact.h"
 #include "core/exploration/objective.h"
 #include "core/exploration/surface_exploration.h"
 #include "core/gait/gait_parameters.h"
@@ -23,6 +24,7 @@ class Regrasp {
     kSettle,   ///< explore: presses with the exploring force until the filters follow
     kRecall,   ///< explore: slides to where the finger's last explorations ended
     kExplore,  ///< Algorithm 1
+    kReturn,   ///< back to the best contact it met, if the last one is worse
     kReload,   ///< its force ramps up
     kDone,
   };
@@ -35,6 +37,7 @@ class Regrasp {
     int without =
         -1;  ///< explore: the stability that counts is that without this finger; -1: with all
     std::uint64_t seed = 0;
+    Vector3d gradient_W = Vector3d::Zero();  ///< start of Algorithm 1 [1/m]; zero: random
   };
   /// Where the finger shall go, in W; follows the object's reference position.
   struct Target {
@@ -86,6 +89,7 @@ class Regrasp {
   double path_ = 0;                         // in this phase [m]
   double phi_ = 0;
   bool on_stability_ = false;
+  BestContact best_;
   SurfaceExploration algorithm_;
 };
 

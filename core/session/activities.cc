@@ -136,6 +136,9 @@ void Session::Impl::UpdateExploration() {
       case FingerExploration::End::kMaxCycles:
         job.explore.reason = ExploreReason::kMaxCycles;
         break;
+      case FingerExploration::End::kObjectMoved:
+        job.explore.reason = ExploreReason::kObjectMoved;
+        break;
       case FingerExploration::End::kContactLost:
         job.explore.reason = ExploreReason::kContactLost;
         break;

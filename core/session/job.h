@@ -19,7 +19,8 @@ enum class ExploreReason : std::uint8_t {
   kMaxCycles,
   kContactLost,
   kDropped,
-  kCancelled
+  kCancelled,
+  kObjectMoved,  ///< the other fingers could not carry what the finger dragged
 };
 
 /// The job that a command starts, or nothing for a command that starts none.

@@ -60,6 +60,8 @@ std::string_view Name(ExploreReason reason) {
       return "gradient";
     case ExploreReason::kMaxCycles:
       return "max_cycles";
+    case ExploreReason::kObjectMoved:
+      return "object_moved";
     case ExploreReason::kContactLost:
       return "contact_lost";
     case ExploreReason::kDropped:

@@ -120,5 +120,39 @@ TEST_F(WallsTest, ANeighbourIsAWallFromTheClearanceOn) {
   for (const Wall& wall : walls) EXPECT_TRUE(wall.direction_W.allFinite());
 }
 
+// The depth of a wall is the way back out of it: against finite differences of the posture, with a
+// clearance at which the links have just met.
+TEST_F(WallsTest, AWallsDepthGrowsByTheWayIntoIt) {
+  ExplorationParameters parameters;
+  parameters.limit_margin = -1;
+  parameters.least_facing = 1;
+  constexpr double kStep = 1e-5, kJustMet = 1e-4;  // m
+  int seen = 0;
+  for (int finger = 0; finger < hand_.num_fingers(); ++finger) {
+    const FingerEstimate& f = estimate_.fingers[static_cast<std::size_t>(finger)];
+    const auto& joints = hand_.fingers[static_cast<std::size_t>(finger)].joints;
+    for (int k = 0; k < 300; ++k) {
+      parameters.clearance = 1e-4 * k;
+      FixedVector<Wall, 8> before, after;
+      FindWalls(hand_, estimate_, finger, parameters, &before);
+      for (std::size_t w = 0; w < before.size(); ++w) {
+        if (before[w].depth > kJustMet) continue;
+        const FingerVector dq =
+            f.J.completeOrthogonalDecomposition().solve(kStep * before[w].direction_W);
+        Estimate moved = estimate_;
+        for (std::size_t n = 0; n < joints.size(); ++n)
+          moved.q[joints[n]] += dq[static_cast<Eigen::Index>(n)];
+        ForwardKinematics(hand_, moved.q, &moved.kinematics);
+        FindWalls(hand_, moved, finger, parameters, &after);
+        if (after.size() != before.size()) continue;  // another pair has met or parted
+        // 5 %: the 1 mm of damping in J⁺ against singular values of 20 mm and more.
+        EXPECT_NEAR((after[w].depth - before[w].depth) / kStep, 1, 0.05) << finger << " wall " << w;
+        ++seen;
+      }
+    }
+  }
+  EXPECT_GT(seen, 5);
+}
+
 }  // namespace
 }  // namespace regrasp

@@ -237,6 +237,38 @@ TEST(SurfaceExploration, AConstrainedMaximumConvergesAndTheWallHolds) {
   EXPECT_EQ(converged, 10);
 }
 
+// Where the finger starts beyond a wall, it is neither pushed back nor let further in.
+TEST(SurfaceExploration, AWallBehindTheStartStandsAtTheStart) {
+  const ExplorationParameters parameters = SlowClimb();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    RandomStream random(seed, 7);
+    Follower finger{StartAt(4e-3, &random)};
+    const Vector3d start = finger.p, into = (Top() - start).normalized();
+    constexpr double kBeyond = 2e-3;
+    const auto Depth = [&](const Vector3d& p) { return into.dot(p - start) + kBeyond; };
+    double deepest = 0;
+    SurfaceExploration algorithm;
+    const auto Sensed = [&](const Vector3d& p) {
+      const Vector3d direction = TangentPart(into, p.normalized());
+      return Wall{direction.normalized(), std::max(0.0, Depth(p)) / direction.norm()};
+    };
+    SurfaceExploration::Input input = finger.Sense();
+    input.walls.push_back(Sensed(finger.p));
+    algorithm.Start(input, Estimator::kLeastSquares, seed, 0, parameters);
+    Status status = Status::kRunning;
+    while (status == Status::kRunning) {
+      input = finger.Sense();
+      if (Depth(finger.p) >= 0) input.walls.push_back(Sensed(finger.p));
+      status = algorithm.Update(input, parameters, kDt);
+      finger.Move(algorithm.velocity_W());
+      deepest = std::max(deepest, Depth(finger.p));
+    }
+    EXPECT_EQ(status, Status::kConverged) << "seed " << seed;
+    EXPECT_LT(deepest, kBeyond + WallSlack(parameters)) << "seed " << seed;
+    EXPECT_GT(Depth(finger.p), kBeyond - WallSlack(parameters)) << "seed " << seed;
+  }
+}
+
 TEST(SurfaceExploration, StaysWithinItsExcursion) {
   ExplorationParameters parameters;
   parameters.max_excursion = 2e-3;

@@ -1,0 +1,45 @@
+#pragma once
+
+/// The best contact a finger has met: phi and the contact point, low-passed alike, so that noise
+/// does not count as a maximum. In W: a finger that sticks drags the object along, and a point of
+/// the object would run away from it.
+
+#include "core/common/frames.h"
+#include "core/common/hash.h"
+
+namespace regrasp {
+
+class BestContact {
+ public:
+  /// Begins at `p_WC` [m] with objective `phi`.
+  void Start(const Vector3d& p_WC, double phi) {
+    p_WC_ = p_WC_best_ = p_WC;
+    phi_ = phi_best_ = phi;
+  }
+  /// One tick of `dt` [s].
+  void Add(const Vector3d& p_WC, double phi, double dt) {
+    constexpr double kFilter_s = 0.15;
+    const double gain = dt / (kFilter_s + dt);
+    phi_ += gain * (phi - phi_);
+    p_WC_ += gain * (p_WC - p_WC_);
+    if (phi_ <= phi_best_) return;
+    phi_best_ = phi_;
+    p_WC_best_ = p_WC_;
+  }
+  const Vector3d& p_WC() const { return p_WC_best_; }  ///< [m]
+  double phi() const { return phi_best_; }
+  /// Whether the way back pays: the best phi is more than 0.2 % above the present one.
+  bool worth_returning() const { return phi_best_ > 1.002 * phi_; }
+  void AddTo(StateHasher* hasher) const {
+    hasher->Add(p_WC_);
+    hasher->Add(phi_);
+    hasher->Add(p_WC_best_);
+    hasher->Add(phi_best_);
+  }
+
+ private:
+  Vector3d p_WC_ = Vector3d::Zero(), p_WC_best_ = Vector3d::Zero();
+  double phi_ = 0, phi_best_ = 0;
+};
+
+}  // namespace regrasp
