@@ -66,6 +66,9 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   std::vector<std::string> arguments = results.parts.front().plan.DaemonArguments();
   arguments.insert(arguments.end(), {"--output-dir", fs::absolute(data).string()});
   SteppedDaemon daemon(arguments);
+  const Json parameters = daemon.Call("param.get");
+  for (const Json& parameter : parameters.at("parameters"))
+    results.parameters[Plain(parameter.at("name"))] = parameter.at("value");
   Figures figures(context, &daemon, data, seed, turns);
   figures.Grasp();
   figures.Explorations(static_cast<int>(repeats));

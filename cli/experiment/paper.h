@@ -20,6 +20,7 @@ struct PaperResults {
   Json figures;  ///< Figures::measured()
   std::vector<PaperPart> parts;
   std::map<std::string, Json> summaries;  ///< Summary() of each part, by its name
+  Json parameters;                        ///< of the daemon: name -> value
   std::string date, command;
   std::string data;  ///< directory of the pictures and tables, relative to the page
 };

@@ -92,16 +92,15 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
        "egg: object=egg", "cube of 4 cm: object=cube_40mm",
        "cube, no load margin: object=cube_40mm gait.margin_min=0 gait.margin_wanted=0",
        "1 N, no load margin: push=1 gait.margin_min=0 gait.margin_wanted=0"});
-  plan = add("long", "Longer and faster", "Five turns with either gait, and settings for speed.");
-  plan->cases = Cases(
-      {fmt::format("returning, 5 turns: turns={}", 5 * size.turns),
-       fmt::format("exploring, 5 turns: turns={} gait.mode=0", 5 * size.turns),
-       fmt::format("exploring, faster: turns={} gait.mode=0 gait.step_rad=0.349 gait.lead=0.5 "
-                   "gait.explore_s=0.7",
-                   size.turns),
-       "returning, fastest: gait.step_rad=0.5236 gait.lead=0.5 gait.speed_rad_s=0.7 "
-       "gait.acceleration=8 gait.transfer_s=0.03 gait.lift_speed=0.1 gait.across_speed=0.15 "
-       "gait.down_speed=0.05 gait.settle_s=0.05"});
+  plan = add("long", "Longer and faster",
+             "Five turns with either gait, a longer exploration, and settings for speed.");
+  plan->cases =
+      Cases({fmt::format("returning, 5 turns: turns={}", 5 * size.turns),
+             fmt::format("exploring, 5 turns: turns={} gait.mode=0", 5 * size.turns),
+             fmt::format("exploring for 1 s: turns={} gait.mode=0 gait.explore_s=1", size.turns),
+             "returning, fastest: gait.step_rad=0.5236 gait.lead=0.5 gait.speed_rad_s=0.7 "
+             "gait.acceleration=8 gait.transfer_s=0.03 gait.lift_speed=0.1 gait.across_speed=0.15 "
+             "gait.down_speed=0.05 gait.settle_s=0.05"});
   plan = add("ablations", "Ablations",
              "The exploring gait without one of its parts, and a plain return to the first contact "
              "in place of every exploration.");
