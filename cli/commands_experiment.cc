@@ -107,6 +107,9 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
   Arg set =
       Text("set", "--set", "NAME=VALUE", "a parameter of the daemon, as in param set; repeatable");
   set.repeated = true;
+  Arg cases = Text("case", "--case", "'NAME: KEY=VALUE ...'",
+                   "settings to compare: object, tilt, push, parameters; repeatable");
+  cases.repeated = true;
   for (const Arg& arg :
        {Text("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
         Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,
@@ -114,7 +117,9 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
         Number("seeds", "-n,--seeds", ArgKind::kInteger, "N", "seeds, one after the other", 1,
                kMostSeeds, seeds),
         Text("object", "--object", "NAME|FILE", "the object", "the scenario's"),
-        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set,
+        Number("tilt", "--tilt", ArgKind::kNumber, "DEG",
+               "tilt of the hand: 0 palm up, 90 fingers down", -180, 180, "the scenario's"),
+        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases,
         Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N",
                "daemons at work; the results do not depend on it", 1, 256, "one per core"),
@@ -141,6 +146,9 @@ std::vector<Arg> ExplorationArgs(const char* estimators) {
 std::vector<CommandSpec> ExperimentCommands() {
   Arg directories = Text("dir", "", "DIR...", "directories of the shards");
   directories.required = directories.repeated = true;
+  Arg only_paper = Text("only-paper", "--only-paper", "",
+                        "leave out what goes beyond the paper, and the ablations");
+  only_paper.kind = ArgKind::kFlag;
   return {
       {"experiment exploration", kGroup,
        "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
@@ -152,7 +160,9 @@ std::vector<CommandSpec> ExperimentCommands() {
              Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns", -360000,
                     360000, "not used"),
              Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
-                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s")},
+                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
+             Number("push", "--push", ArgKind::kNumber, "N",
+                    "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
             "10", "paper"),
        Experiment},
       {"experiment noise-sweep", kGroup,
@@ -163,18 +173,17 @@ std::vector<CommandSpec> ExperimentCommands() {
        "everything the paper shows, measured again: figures, trials and a page",
        nullptr,
        {Number("seed", "--seed", ArgKind::kInteger, "N", "first seed", 0,
-               kMaxSafeInteger - kMostSeeds, "1"),
+               kMaxSafeInteger - kMostSeeds, "20000"),
         Number("seeds", "-n,--seeds", ArgKind::kInteger, "N",
-               "seeds of the explorations; the sweep and the rotations take a fifth of them", 1,
-               kMostSeeds, "50"),
+               "seeds of the explorations; all other parts take a fifth of them", 1, kMostSeeds,
+               "50"),
         Number("repeats", "--repeats", ArgKind::kInteger, "N",
                "explorations of the ring finger with other start gradients", 0, 1000,
                "50, as in the paper"),
         Number("turns", "--turns", ArgKind::kNumber, "N", "of each rotation", 0.01, 1000, "1"),
         Text("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
-        Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360,
-               "12"),
-        Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360, "8"),
+        only_paper, Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N", "daemons at work", 1, 256,
                "one per core"),
         OutputDirectory()},

@@ -189,6 +189,7 @@ Json EventJson(const Event& event, const HandModel& hand, double dt) {
     json["state"] = Name(static_cast<SessionState>(static_cast<int>(event.value)));
   if (event.kind == EventKind::kJobStarted || event.kind == EventKind::kJobFinished)
     json["job"] = static_cast<std::int64_t>(event.value);
+  if (event.kind == EventKind::kRegrasp && event.from > 0) json["from"] = event.from;
   json["text"] = event.text;
   if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
     json["incident"] = IncidentName(event.tick) + ".json";

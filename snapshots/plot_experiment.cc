@@ -4,42 +4,24 @@
 #include <stdexcept>
 
 #include "snapshots/axes.h"
+#include "snapshots/experiment_marks.h"
 
 namespace regrasp {
 namespace {
 
-constexpr double kTop = 150, kBottom = 90, kLeft = 230, kRight = 60, kGap = 46;
+constexpr double kTopOfAll = 150, kPanelTitle = 30, kBottom = 90, kLeft = 230, kRight = 40,
+                 kGap = 46;
+constexpr double kBetween = 50;  // columns
+constexpr double kLabelSize = 18;
 constexpr double kRowHeight = 40;    // least
 constexpr double kMostPerMark = 22;  // height
 
-std::vector<std::string> Distinct(const ExperimentPicture& picture,
-                                  std::string ExperimentGroup::*field) {
-  std::vector<std::string> names;
-  for (const auto& group : picture.groups)
-    if (std::find(names.begin(), names.end(), group.*field) == names.end())
-      names.push_back(group.*field);
-  return names;
-}
-
-std::size_t IndexOf(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-Colour ColourOfSeries(std::size_t series) {
-  constexpr std::array kColours = {kBlue, kVermillion, kGreen, kPurple};
-  return kColours[series % kColours.size()];
-}
-
-/// The first share is a full disc, the second an open square.
 void DrawShare(Canvas* canvas, const Panel& panel, const ShareMark& mark, std::size_t which,
                double y, Colour colour) {
   const double row = y, at = panel.At(100 * mark.share, 0).x;
   canvas->Line({panel.At(100 * mark.low, 0).x, row}, {panel.At(100 * mark.high, 0).x, row},
                {colour, which == 0 ? 2.5 : 1.5});
-  if (which == 0)
-    canvas->Mark(Marker::kDisc, {at, row}, 6, colour);
-  else
-    canvas->Mark(Marker::kSquare, {at, row}, 6, colour, kWhite);
+  DrawShareMark(canvas, {at, row}, which, colour);
 }
 
 void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, double y,
@@ -52,6 +34,15 @@ void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, do
   canvas->Line({x(q.median), y - height / 2 - 2}, {x(q.median), y + height / 2 + 2}, {colour, 3});
 }
 
+Axis MeasureAxis(const ExperimentPicture& picture, std::size_t which) {
+  Range range;
+  for (const auto& group : picture.groups)
+    if (const QuantileMark& q = group.measures.at(which); q.has_values)
+      for (const double value : {q.q05, q.q95}) range.Add(value);
+  if (range.empty()) range.Add(0);
+  return NiceAxis(range.lo, range.hi, 5, true, picture.measure_labels.at(which));
+}
+
 }  // namespace
 
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
@@ -62,43 +53,48 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
   const auto panels = Distinct(picture, &ExperimentGroup::panel);
   const std::size_t marks = picture.groups.front().shares.size();
   const double lines = static_cast<double>(series.size() * std::max<std::size_t>(1, marks));
+  const bool named = !panels.front().empty();
+  const double top_of_panels = named ? kTopOfAll + kPanelTitle : kTopOfAll;
   const double row_height = std::max(kRowHeight, 15 * lines + 12);
   const double blocks = static_cast<double>(panels.size());
   const double block = row_height * static_cast<double>(rows.size());
-  const int height =
-      static_cast<int>(std::max(600.0, kTop + blocks * block + (blocks - 1) * kGap + kBottom));
+  const int height = static_cast<int>(
+      std::max(600.0, top_of_panels + blocks * block + (blocks - 1) * kGap + kBottom));
   Canvas canvas(1600, height, path);
   const double unit_height = canvas.height(), unit_width = canvas.width();
   DrawTitle(&canvas, picture.title, picture.facts);
+  DrawMarkLegend(&canvas, picture, series, true);
 
-  Range range;
-  for (const auto& group : picture.groups)
-    if (group.measure.has_values)
-      for (const double value : {group.measure.q05, group.measure.q95}) range.Add(value);
-  if (range.empty()) range.Add(0);
-  const Axis measure = NiceAxis(range.lo, range.hi, 6, true, picture.measure_label);
-  const Axis share = NiceAxis(0, 100, 5, false, "share of trials, 95 % interval  [%]");
-  const double free = unit_width - kLeft - kRight - 60;
-  const double left_width = free * 0.52, right_width = free * 0.48;
-  const double stretch = (unit_height - kTop - kBottom - (blocks - 1) * kGap) / (blocks * block);
+  double labels = kLeft;
+  for (const auto& row : rows)
+    labels = std::max(labels, 40 + 14 + canvas.TextWidth(row, kLabelSize));
+  std::vector<Axis> axes = {NiceAxis(0, 100, 5, false, "share of trials, 95 % interval  [%]")};
+  for (std::size_t m = 0; m < picture.measure_labels.size(); ++m)
+    axes.push_back(MeasureAxis(picture, m));
+  const auto columns = static_cast<double>(axes.size());
+  const double free = unit_width - labels - kRight - kBetween * (columns - 1);
+  const double width = free / columns;
+  const double stretch =
+      (unit_height - top_of_panels - kBottom - (blocks - 1) * kGap) / (blocks * block);
 
   for (std::size_t p = 0; p < panels.size(); ++p) {
-    const double top = kTop + static_cast<double>(p) * (block * stretch + kGap);
-    const Box left_box(kLeft, top, left_width, block * stretch);
-    const Box right_box(kLeft + left_width + 60, top, right_width, block * stretch);
+    const double top = top_of_panels + static_cast<double>(p) * (block * stretch + kGap);
     const Axis none{0.2, 0.8, 1, ""};  // no ticks
-    const Panel left{left_box, share, none}, right{right_box, measure, none};
-    const bool last = p + 1 == panels.size();
-    DrawGrid(&canvas, left, last);
-    DrawGrid(&canvas, right, last);
-    if (!panels[p].empty()) canvas.Text({kLeft, top - 16}, panels[p], {.size = 19, .bold = true});
+    std::vector<Panel> parts;
+    for (const Axis& axis : axes)
+      parts.push_back({Box(labels + static_cast<double>(parts.size()) * (width + kBetween), top,
+                           width, block * stretch),
+                       axis, none});
+    for (const Panel& part : parts) DrawGrid(&canvas, part, p + 1 == panels.size());
+    if (!panels[p].empty()) canvas.Text({labels, top - 16}, panels[p], {.size = 19, .bold = true});
     const double h = row_height * stretch;
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double y = top + h * static_cast<double>(r);
       if (r > 0)
-        for (const Box& box : {left_box, right_box})
-          canvas.Line({box.x, y}, {box.x + box.width, y}, {kGridGrey, 1});
-      canvas.Text({kLeft - 14, y + h / 2}, rows[r], {.size = 18, .align_x = AlignX::kRight});
+        for (const Panel& part : parts)
+          canvas.Line({part.area.x, y}, {part.area.x + part.area.width, y}, {kGridGrey, 1});
+      canvas.Text({labels - 14, y + h / 2}, rows[r],
+                  {.size = kLabelSize, .align_x = AlignX::kRight});
     }
     for (const auto& group : picture.groups) {
       if (group.panel != panels[p]) continue;
@@ -108,39 +104,16 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
       const double slot = std::min((h - 12) / n, kMostPerMark * static_cast<double>(marks));
       const double begin = y + (h - slot * n) / 2 + slot * static_cast<double>(s);
       for (std::size_t m = 0; m < group.shares.size(); ++m)
-        DrawShare(&canvas, left, group.shares[m], m,
+        DrawShare(&canvas, parts.front(), group.shares[m], m,
                   begin + slot * (static_cast<double>(m) + 0.5) / static_cast<double>(marks),
                   ColourOfSeries(s));
-      DrawQuantiles(&canvas, right, group.measure, begin + slot / 2, std::min(16.0, slot * 0.6),
-                    ColourOfSeries(s));
+      for (std::size_t m = 0; m < group.measures.size(); ++m)
+        DrawQuantiles(&canvas, parts[m + 1], group.measures[m], begin + slot / 2,
+                      std::min(16.0, slot * 0.6), ColourOfSeries(s));
     }
-    DrawFrame(&canvas, left);
-    DrawFrame(&canvas, right);
+    for (const Panel& part : parts) DrawFrame(&canvas, part);
   }
 
-  double x = kLeft;
-  const auto entry = [&](const std::string& text, auto&& draw) {
-    draw(Point2{x + 12, 112});
-    canvas.Text({x + 32, 112}, text, {.size = 17});
-    x += 60 + canvas.TextWidth(text, 17);
-  };
-  for (std::size_t m = 0; m < marks; ++m)
-    entry(picture.groups.front().shares[m].name, [&](Point2 at) {
-      if (m == 0)
-        canvas.Mark(Marker::kDisc, at, 6, kInk);
-      else
-        canvas.Mark(Marker::kSquare, at, 6, kInk, kWhite);
-    });
-  if (series.size() > 1)
-    for (std::size_t s = 0; s < series.size(); ++s)
-      entry(series[s], [&](Point2 at) {
-        canvas.FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
-      });
-  entry("5, 25, 50, 75, 95 % of the trials", [&](Point2 at) {
-    canvas.Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
-    canvas.FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));
-    canvas.Line({at.x, at.y - 9}, {at.x, at.y + 9}, {kGrey, 3});
-  });
   canvas.Save();
 }
 

@@ -22,18 +22,22 @@ struct QuantileMark {
 struct ExperimentGroup {
   std::string row, series, panel;  ///< label at the left, colour, and panel; may be empty
   std::vector<ShareMark> shares;
-  QuantileMark measure;
+  std::vector<QuantileMark> measures;
 };
 
 struct ExperimentPicture {
   std::string title, facts;
-  std::string measure_label;  ///< with its unit
+  std::vector<std::string> measure_labels;  ///< with their units
   std::vector<ExperimentGroup> groups;
 };
 
-/// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of the measured
-/// quantity beside them. Groups of several panels go side by side. Throws std::runtime_error with
-/// `path` as the other pictures do (snapshots.h).
+/// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of each measured
+/// quantity beside them. Groups of several panels go one below the other. Throws std::runtime_error
+/// with `path` as the other pictures do (snapshots.h).
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path);
+
+/// Shares against the rows (levels of noise), a panel for each finger, series beside each other.
+/// Throws as PlotExperiment().
+void PlotSweep(const ExperimentPicture& picture, const std::string& path);
 
 }  // namespace regrasp

@@ -17,6 +17,11 @@ ShareMark Share(const Json& count, std::string name) {
   return {std::move(name), count.at("share"), count.at("low"), count.at("high")};
 }
 
+ShareMark Rest(const Json& count, std::string name) {
+  const ShareMark all = Share(count, std::move(name));
+  return {all.name, 1 - all.share, 1 - all.high, 1 - all.low};
+}
+
 QuantileMark Quantiles(const Json& json, double scale) {
   if (json.at("n") == 0) return {};
   const auto value = [&](const char* name) { return scale * json.at(name).get<double>(); };
@@ -29,41 +34,84 @@ std::string Joined(const Json& names) {
   return text;
 }
 
+/// ", gait.mode 0, ...": what holds for every trial.
+std::string Settings(const Json& plan) {
+  std::string text;
+  for (const auto& [name, value] : plan.at("set").items())
+    text += fmt::format(", {} {}", name, value.get<std::string>());
+  return text;
+}
+
+/// "−z" for "0,0,-1", else as it is.
+std::string AxisName(const std::string& axis) {
+  for (const auto& [text, name] :
+       {std::pair{"1,0,0", "+x"}, std::pair{"-1,0,0", "−x"}, std::pair{"0,1,0", "+y"},
+        std::pair{"0,-1,0", "−y"}, std::pair{"0,0,1", "+z"}, std::pair{"0,0,-1", "−z"}})
+    if (axis == text) return name;
+  return axis;
+}
+
+/// Explorations at several levels of noise.
+bool IsSweep(const Json& summary) {
+  const Json& plan = summary.at("experiment");
+  return plan.at("experiment") != "rotation" && plan.at("noise").size() > 1 &&
+         !plan.contains("cases");
+}
+
 ExperimentPicture PictureOf(const Json& summary) {
   const Json& plan = summary.at("experiment");
   const bool rotation = plan.at("experiment") == "rotation";
   const bool map = !rotation && plan.at("rays").get<int>() > 0;
   const bool sweep = plan.at("noise").size() > 1;
   ExperimentPicture picture;
-  picture.title = rotation ? "Turning the object by finger gait"
-                           : "Exploring with one finger: how often it succeeds";
+  picture.title = rotation           ? "Turning the object by finger gait"
+                  : IsSweep(summary) ? "Exploring with one finger: success against sensor noise"
+                                     : "Exploring with one finger: how often it succeeds";
   picture.facts = fmt::format(
       "{}, noise {}, seeds {} to {}, {} trials, regrasp {}",
-      rotation ? fmt::format("{:g} turns", plan.at("turns").get<double>())
+      rotation ? fmt::format("{:.3g} turn{}", plan.at("turns").get<double>(),
+                             plan.at("turns").get<double>() == 1 ? "" : "s")
                : "criterion " + plan.at("criterion").get<std::string>(),
-      Joined(plan.at("noise")), plan.at("first_seed").get<std::int64_t>(),
+      Joined(plan.at("noise")) + Settings(plan), plan.at("first_seed").get<std::int64_t>(),
       plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
       summary.at("trials").get<int>(), plan.at("version").get<std::string>());
-  picture.measure_label = rotation ? "rate  [deg/min]"
-                          : map    ? "φ at the end, share of the best within reach  [%]"
-                                   : "gain of φ  [%]";
-  const char* measure = rotation ? "rate_deg_min" : map ? "share_of_best" : "phi_true_gain";
+  struct Measure {
+    const char *name, *label;
+    double scale;
+  };
+  std::vector<Measure> measures;
+  if (rotation)
+    measures = {{"rate_deg_min", "rate  [°/min]", 1},
+                {"max_position_error_m", "object off its place, most  [mm]", 1000}};
+  else if (map)
+    measures = {{"share_of_best", "φ at the end, share of the best within reach  [%]", 100}};
+  else
+    measures = {{"phi_true_gain", "gain of φ  [%]", 100}};
+  for (const Measure& measure : measures) picture.measure_labels.push_back(measure.label);
+  const bool axes = rotation && plan.at("axes").size() > 1;
   for (const Json& json : summary.at("groups")) {
     ExperimentGroup group;
     const std::string noise = json.at("noise");
+    const std::string name = json.value("case", "");
     const Json& counts = json.at("counts");
     if (rotation) {
-      group.row = "axis " + json.at("axis_W").get<std::string>();
-      group.series = noise;
-      group.shares = {Share(counts.at("completed"), "completed")};
+      const std::string axis = "axis " + AxisName(json.at("axis_W"));
+      group.row = !name.empty() ? name : axes || !sweep ? axis : "noise " + noise;
+      group.panel = !name.empty() && axes ? axis : "";
+      group.series = !name.empty() || axes ? "noise " + noise : "";
+      group.shares = {Share(counts.at("completed"), "completed"),
+                      Rest(counts.at("dropped"), "object not dropped")};
     } else {
-      group.row = sweep ? noise : json.at("finger").get<std::string>();
-      group.panel = sweep ? json.at("finger").get<std::string>() : "";
+      const std::string finger = json.at("finger");
+      group.row = sweep ? noise : finger;
+      group.panel = sweep ? finger : "";
       group.series = json.at("estimator");
+      if (!name.empty()) group.panel = group.panel.empty() ? name : name + ", " + group.panel;
       group.shares = {Share(counts.at("rose"), "φ rose")};
       if (map) group.shares.push_back(Share(counts.at("near_best"), "within 5 % of the best"));
     }
-    group.measure = Quantiles(json.at("quantiles").at(measure), rotation ? 1 : 100);
+    for (const Measure& measure : measures)
+      group.measures.push_back(Quantiles(json.at("quantiles").at(measure.name), measure.scale));
     picture.groups.push_back(group);
   }
   return picture;
@@ -79,7 +127,9 @@ int main(int argc, char** argv) {
   }
   try {
     std::ifstream file(argv[1]);
-    regrasp::PlotExperiment(regrasp::PictureOf(nlohmann::ordered_json::parse(file)), argv[2]);
+    const auto summary = nlohmann::ordered_json::parse(file);
+    const auto draw = regrasp::IsSweep(summary) ? regrasp::PlotSweep : regrasp::PlotExperiment;
+    draw(regrasp::PictureOf(summary), argv[2]);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "regrasp-plot-experiment: {}\n", error.what());

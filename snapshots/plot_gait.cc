@@ -59,6 +59,13 @@ BandLook LookOfGaitState(const HandModel& hand, int value) {
   return {fmt::format("S_{}", initial), Tint(LookOfFinger(value).colour, 0.42)};
 }
 
+/// The stability that the exploring finger maximises: in S_F that of the grasp without the thumb.
+/// kNoValue while it maximises something else.
+double StabilityObjective(const Frame& frame) {
+  const ExplorationFrame& e = frame.exploration;
+  return e.active && (e.criterion == Criterion::kStability || e.on_stability) ? e.phi : kNoValue;
+}
+
 bool AnyValue(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
@@ -118,6 +125,8 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
       Column(frames, [](const Frame& f) { return Holds(f) ? f.stability.active : kNoValue; });
   const auto threshold = Column(frames, [](const Frame& f) { return f.stability.threshold; });
 
+  const auto objective = Column(frames, StabilityObjective);
+
   // Strips: state, gait (while there is one), every finger, events. Panels: what has values.
   const bool rotates = AnyValue(achieved) || AnyValue(target), explores = AnyValue(phi);
   const int n = hand.num_fingers();
@@ -138,7 +147,8 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   };
   const Panel upper = rotates ? add(AxisOver({target, achieved}, true, "angle [°]")) : Panel{};
   const Panel middle = explores ? add(AxisOver({phi}, true, "φ  [10⁻⁴ m³]")) : Panel{};
-  const Panel lower = add(AxisOver({stability, threshold}, true, StabilityLabel(frames)));
+  const Panel lower =
+      add(AxisOver({stability, threshold, objective}, true, StabilityLabel(frames)));
 
   const auto states =
       Bands(frames, [](const Frame& frame) { return static_cast<int>(frame.state); });
@@ -178,6 +188,18 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   }
   DrawCurve(&canvas, lower, t, stability, {kInk, 2.5});
   DrawCurve(&canvas, lower, t, threshold, {kGrey, 2, {12, 7}});
+  std::vector<LegendEntry> holding = {LineEntry("holding fingers", {kInk, 2.5}),
+                                      LineEntry("threshold", {kGrey, 2, {12, 7}})};
+  for (int f = 0; f < n; ++f) {
+    std::vector<double> own = objective;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      if (ExploringFinger(frames[i]) != f) own[i] = kNoValue;
+    if (!AnyValue(own)) continue;
+    const Pen pen{LookOfFinger(f).colour, 3.5};
+    DrawCurve(&canvas, lower, t, own, pen);
+    holding.push_back(
+        LineEntry(rotates ? "objective in " + LookOfGaitState(hand, f).label : "objective", pen));
+  }
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
 
   const double side = left + width + 28;
@@ -207,8 +229,6 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   }
   if (explores)
     y = DrawLegend(&canvas, {side, std::max(y + 8, middle.area.y)}, "φ, noise-free", explorers);
-  const std::array<LegendEntry, 2> holding = {LineEntry("holding fingers", {kInk, 2.5}),
-                                              LineEntry("threshold", {kGrey, 2, {12, 7}})};
   DrawLegend(&canvas, {side, std::max(y + 8, lower.area.y)}, "stability, as sensed", holding);
   canvas.Save();
 }

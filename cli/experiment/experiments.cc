@@ -13,6 +13,10 @@
 namespace regrasp::cli {
 
 void CompletePlan(Plan* plan) {
+  for (std::size_t i = 1; i < plan->num_cases(); ++i) {
+    SteppedDaemon daemon(plan->DaemonArguments(i));
+    Prepare(&daemon, *plan, i);
+  }
   SteppedDaemon daemon(plan->DaemonArguments());
   plan->version = Plain(daemon.Call("version").at("version"));
   plan->build = DaemonBuild();

@@ -16,19 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSweepShare = 5;  // the sweep and the rotations take so many times fewer seeds
+// The first of the trials' seeds: never used while tuning.
+constexpr const char* kFirstSeed = "20000";
 
 std::int64_t Integer(const Invocation& invocation, const char* key, const char* otherwise) {
   return static_cast<std::int64_t>(
       ParseNumber(invocation.Text(key, otherwise), std::string("--") + key));
-}
-
-/// Runs what is left of one part and writes its results.
-Json Part(Context& context, Plan plan, int workers, const fs::path& directory,
-          const std::string& title) {
-  if (!context.options().quiet) fmt::print(stderr, "{}\n", title);
-  CompletePlan(&plan);
-  return RunExperiment(context, plan, workers, directory);
 }
 
 }  // namespace
@@ -37,9 +30,8 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   const Interruptible interruptible;
   const fs::path output = invocation.Text("output");
   const fs::path data = output / "reproduction";
-  const std::int64_t seed = Integer(invocation, "seed", "1");
+  const std::int64_t seed = Integer(invocation, "seed", kFirstSeed);
   const std::int64_t seeds = Integer(invocation, "seeds", "50");
-  const std::int64_t few = std::max<std::int64_t>(1, seeds / kSweepShare);
   const std::int64_t repeats = Integer(invocation, "repeats", "50");
   const double turns = ParseNumber(invocation.Text("turns", "1"), "--turns");
   const int workers = Workers(invocation);
@@ -49,52 +41,53 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
     throw CliError(kIo, fmt::format("cannot make {}: {}", data.string(), error.message()),
                    "regrasp experiment paper -o OTHER_DIR");
 
-  Plan common;
-  if (invocation.Has("models-dir"))
-    common.models_dir = fs::absolute(invocation.Text("models-dir")).string();
-  common.noise = {"paper"};
-  common.first_seed = seed;
+  const PaperSize size = {.seed = seed,
+                          .seeds = seeds,
+                          .finger = invocation.Text("finger", "all"),
+                          .rays = static_cast<int>(Integer(invocation, "rays", "8")),
+                          .turns = turns,
+                          .models_dir = invocation.Has("models-dir")
+                                            ? fs::absolute(invocation.Text("models-dir")).string()
+                                            : ""};
   PaperResults results;
-
-  Plan plan = common;
-  plan.experiment = "exploration";
-  plan.subjects = {invocation.Text("finger", "all")};
-  plan.criterion = "manipulability";
-  plan.estimators = {"least_squares", "secant"};
-  plan.rays = static_cast<int>(Integer(invocation, "rays", "12"));
-  plan.seeds = seeds;
-  results.exploration = Part(context, plan, workers, data / "exploration",
-                             fmt::format("explorations, {} seeds", seeds));
-  plan.experiment = "noise-sweep";
-  plan.noise = {"off", "fine", "paper", "coarse", "taxel"};
-  plan.seeds = few;
-  results.sweep =
-      Part(context, plan, workers, data / "sweep", fmt::format("noise sweep, {} seeds", few));
-  plan = common;
-  plan.experiment = "rotation";
-  plan.subjects = {"0,0,-1"};
-  plan.turns = turns;
-  plan.seeds = few;
-  plan.set = {{"gait.mode", "1"}};
-  results.returning = Part(context, plan, workers, data / "returning",
-                           fmt::format("rotations, returning, {} seeds", few));
-  plan.set = {{"gait.mode", "0"}};
-  results.exploring = Part(context, plan, workers, data / "exploring",
-                           fmt::format("rotations, exploring, {} seeds", few));
+  results.parts = PaperParts(size);
+  if (invocation.Has("only-paper"))
+    std::erase_if(results.parts, [](const PaperPart& part) { return !part.title.empty(); });
+  // Whatever a daemon refuses is found before the first hour has passed.
+  for (PaperPart& part : results.parts) CompletePlan(&part.plan);
+  std::size_t number = 0;
+  for (const PaperPart& part : results.parts) {
+    if (!context.options().quiet)
+      fmt::print(stderr, "{} ({} of {})\n", part.name, ++number, results.parts.size());
+    results.summaries[part.name] = RunExperiment(context, part.plan, workers, data / part.name);
+  }
 
   if (!context.options().quiet) fmt::print(stderr, "figures, {} repetitions\n", repeats);
-  std::vector<std::string> arguments = common.DaemonArguments();
+  std::vector<std::string> arguments = results.parts.front().plan.DaemonArguments();
   arguments.insert(arguments.end(), {"--output-dir", fs::absolute(data).string()});
   SteppedDaemon daemon(arguments);
+  const Json parameters = daemon.Call("param.get");
+  for (const Json& parameter : parameters.at("parameters"))
+    results.parameters[Plain(parameter.at("name"))] = parameter.at("value");
   Figures figures(context, &daemon, data, seed, turns);
   figures.Grasp();
   figures.Explorations(static_cast<int>(repeats));
   figures.Rotations();
   results.figures = figures.measured();
+  Json measured = results.figures;
+  measured.erase("pictures");  // their paths are those of this machine
+  WriteFile(data / "figures.json", measured.dump(1) + "\n");
   results.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   results.command =
       fmt::format("regrasp experiment paper --seed {} -n {} --repeats {} --turns {} -o DIR", seed,
                   seeds, repeats, turns);
+  for (const char* flag : {"finger", "rays"})
+    if (invocation.Has(flag)) {
+      const std::string given = fmt::format(" --{} {}", flag, invocation.Text(flag));
+      results.command.insert(results.command.rfind(" -o "), given);
+    }
+  if (invocation.Has("only-paper"))
+    results.command.insert(results.command.rfind(" -o "), " --only-paper");
   results.data = "reproduction";
   const fs::path page = output / "reproduction.md";
   WriteFile(page, ReproductionPage(results));

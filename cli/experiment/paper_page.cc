@@ -4,9 +4,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string_view>
 
 #include "cli/experiment/paper.h"
-#include "cli/experiment/statistics.h"
+#include "cli/experiment/paper_tables.h"
 #include "cli/print.h"
 
 namespace regrasp::cli {
@@ -16,48 +17,63 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kForceTolerance = 0.02;  // of the weight
 constexpr double kTrueRadius_m = 0.025;   // the paper's sphere of 5 cm
 constexpr double kRadiusTolerance_m = 0.001;
+constexpr double kFewestSteps =
+    100;  // turns of so many parts are written as turns, else as an angle
+constexpr std::int64_t kFirstFreshSeed = 20000;
 constexpr double kMostly = 0.9;      // a share from which "always" is called partly shown
 constexpr double kClearDrop = 0.75;  // of stability in S_F against the mean
 
-/// What we do otherwise than the paper, or where it leaves the choice open.
+/// What we do otherwise than the paper, or where it leaves the choice open. {NAME} is the value of
+/// a parameter, {NAME*F} that value times F.
 constexpr const char* kDeviations = R"(
 | where | the paper | here, and why |
 |---|---|---|
-| line 2 | start gradient N(0, 0.15), no unit | two tangential components, times ∇max = 60 /m: 0.15 /m would vanish beside the gradients met |
-| line 3 | stop at ‖P T⁻¹ ∇̃φ‖ ≤ ε | for 10 updates in a row, as one estimate may merely cross zero; what points into a wall is removed first. ε = 4 /m and N_max = 8000 cycles are ours |
-| line 4 | every n cycles | also not before the contact has moved 0.3 mm: a secant over less is noise. n = 50 is ours |
+| line 2 | start gradient N(0, 0.15), no unit | two tangential components, times ∇max = {exploration.gradient_max} /m: 0.15 /m would vanish beside the gradients met |
+| line 3 | stop at ‖P T⁻¹ ∇̃φ‖ ≤ ε | for {exploration.converged_updates} updates in a row, as one estimate may merely cross zero; what points into a wall is removed first. ε = {exploration.epsilon} /m and N_max = {exploration.max_cycles} cycles are ours |
+| line 4 | every n cycles | also not before the contact has moved {exploration.min_displacement*1e3} mm: a secant over less is noise. n = {exploration.update_cycles} is ours |
 | line 5 | Δc = P T (c′ − c) | the inverse of T: as printed it turns a displacement in r the wrong way |
 | line 6 | component-wise secant | offered as `secant`; the default fits the gradient by least squares over the recent past, with a circular dither |
-| line 7 | limit to ∇max | ∇max = 60 /m is ours |
-| line 11 | a displacement η ∇̃φ | a velocity, held to 4 … 15 mm/s: slower, friction stops the finger. η = 3e-4 m²/s is ours |
-| Alg. 1 | no bound | at most 8 mm from the start; joint limits, the other fingers and the end of the round fingertip are walls; with least squares a return to the best φ met and up to three tries |
+| line 7 | limit to ∇max | ∇max = {exploration.gradient_max} /m is ours |
+| line 3, 11 | P, T at the contact | the contact is placed on the fingertip's known surface by its sensed normal: 2° of normal noise move it less than 1 mm of position noise |
+| line 11 | a displacement η ∇̃φ | a velocity, held to {exploration.speed_min*1e3} … {exploration.speed_max*1e3} mm/s: slower, friction stops the finger; with least squares the dither keeps it moving, and the least speed falls with a gradient below ε. η = {exploration.eta} m²/s is ours |
+| Alg. 1 | reference frame r | W, the fixed palm's frame |
+| Alg. 1 | φ in no unit | manipulability sqrt(det J Jᵀ) in 1e-4 m³, so that φ is of order 1 |
+| Alg. 1 | no bound | at most {exploration.max_excursion*1e3} mm from the start; joint limits, the other fingers and the end of the round fingertip are walls; with least squares a return to the best φ met and up to three tries |
 | Sec. II | grasp stability, no formula | smallest singular value of the grasp matrix, torques over the mean contact distance; others can be chosen |
-| Sec. II | a minimal threshold | 0.30, ours |
-| Fig. 2 | linear sum, no weights | φ + 1.0 σ_min |
-| Sec. II | hybrid controller of earlier work | object wrench, friction-cone QP, joint torques |
+| Sec. II | a minimal threshold | {control.stability_threshold}, ours; back to manipulability 5 % above it |
+| Fig. 2 | linear sum, no weights | φ + {exploration.stability_weight} σ_min |
+| Sec. II | hybrid controller of earlier work | object wrench by PI on the sensed pose, friction-cone QP for contact forces, joint torques by Jᵀf, posture springs in the null space. A sliding finger: force along the normal ({exploration.normal_force} N, less where the load margin asks), velocity with friction feedforward across it |
+| Sec. II | the object is in the hand | a stand-in holds it while the hand closes, and lets go before anything is measured |
 | Sec. III | Vortex | ODE at 1 kHz |
-| Sec. III | noise of a real sensor, no numbers | presets; `paper` is 1 mm, 2°, 0.05 N, joints 0.3°, object 1 mm and 1° |
+| Sec. III | noise of a real sensor, no numbers | presets; `paper` is 1 mm, 2°, 0.05 N, joints 0.3°, object 1 mm and 1°; contact normals and joint angles are noisy, too |
+| Sec. III | one start | each seed has its own start: joints σ {start.joint_sigma_rad*57.29578}°, object σ {start.object_sigma_m*1e3} mm |
+| Fig. 1 | Shadow Hand model of [8] | 22 joints, links as capsules, one drive per joint |
 | Sec. III | sphere of 5 cm | 80 g, friction 0.8 |
-| Sec. III b | a fixed gait | a finger leaves only while the others keep a load margin of 0.1 N; contacts that let the thumb leave are sought first |
+| Sec. III b | S_L, S_R, S_M, S_F, S_T | the same order; the opposing finger is found from the contact normals and is always last |
+| Sec. III b | a fixed gait | a finger leaves only while the others keep a load margin of {gait.margin_min} N; contacts that let the thumb leave ({gait.margin_wanted} N) are sought first |
+| Sec. III b | the free finger explores | for at most {gait.explore_s} s, within {gait.disc_radius*1e3} mm of its first contact, from the gradient with which its last exploration ended |
 | Sec. III b | fingers slide to new contacts | they hop back to where they first touched, then slide while they explore. By default they do not explore at all (`gait.mode` 1): turning is then faster |
 )";
 
-const Json& GroupOf(const Json& summary, const Json& wanted) {
-  for (const Json& group : summary.at("groups"))
-    if (std::all_of(wanted.items().begin(), wanted.items().end(), [&](const auto& item) {
-          return At(group, item.key().c_str()) == item.value();
-        }))
-      return group;
-  throw CliError(kFailed, fmt::format("the summary has no group {}", wanted.dump()));
-}
-
-std::string Share(int k, int n) {
-  const Interval interval = WilsonInterval(k, n);
-  return fmt::format("{}/{} ({:.0f}–{:.0f} %)", k, n, 100 * interval.low, 100 * interval.high);
-}
-
-std::string Share(const Json& group, const char* count) {
-  return Share(group.at("counts").at(count).at("k").get<int>(), group.at("n").get<int>());
+/// kDeviations with the values of `parameters`. Throws CliError(kFailed) for one that is not there.
+std::string Deviations(const Json& parameters) {
+  std::string text;
+  std::string_view rest = kDeviations;
+  for (std::size_t open = rest.find('{'); open != rest.npos; open = rest.find('{')) {
+    const std::size_t close = rest.find('}', open);
+    const std::string field(rest.substr(open + 1, close - open - 1));
+    const std::size_t times = field.find('*');
+    const std::string name = field.substr(0, times);
+    const Json& value = At(parameters, name.c_str());
+    if (!value.is_number())
+      throw CliError(kFailed, fmt::format("the daemon has no parameter {}", name));
+    const double factor =
+        times == field.npos ? 1 : ParseNumber(field.substr(times + 1), "a deviation's factor");
+    text += rest.substr(0, open);
+    text += fmt::format("{:.4g}", value.get<double>() * factor);
+    rest.remove_prefix(close + 1);
+  }
+  return text + std::string(rest);
 }
 
 const char* Verdict(double share) {
@@ -71,12 +87,11 @@ const char* Verdict(const Json& group, const char* count) {
 /// The table of claims.
 class Claims {
  public:
-  explicit Claims(std::string command) : command_(std::move(command)) {}
+  explicit Claims(std::string command) : commands_({std::move(command)}) {}
   void Add(const std::string& claim, const std::string& measured, const std::string& verdict,
            const std::string& command = "") {
     ++verdicts_[verdict];
-    text_ += fmt::format("| {} | {} | {} | {} |\n", claim, measured,
-                         command.empty() ? "(1)" : "`" + command + "`", verdict);
+    text_ += fmt::format("| {} | {} | {} | {} |\n", claim, measured, Note(command), verdict);
   }
   /// "12 yes, 2 partly, 1 no"
   std::string Count() const {
@@ -87,31 +102,28 @@ class Claims {
     return text;
   }
   std::string Text() const {
-    return "| the paper | measured here (95 % interval) | command | shown |\n|---|---|---|---|\n" +
-           text_ + fmt::format("\n(1) `{}`\n", command_);
+    std::string notes;
+    for (std::size_t i = 0; i < commands_.size(); ++i)
+      notes += fmt::format("{}. `{}`\n", i + 1, commands_[i]);
+    return "| the paper | measured here (95 % interval) | command | verdict "
+           "|\n|---|---|---|---|\n" +
+           text_ + "\nCommands:\n\n" + notes;
   }
 
  private:
-  std::string command_, text_;
+  /// "(2)", for a command in the list below the table. Empty: the whole report.
+  std::string Note(const std::string& command) {
+    const std::string& made = command.empty() ? commands_.front() : command;
+    const auto place = std::find(commands_.begin(), commands_.end(), made);
+    const auto index = place - commands_.begin();
+    if (place == commands_.end()) commands_.push_back(made);
+    return fmt::format("({})", index + 1);
+  }
+
+  std::vector<std::string> commands_;
+  std::string text_;
   std::map<std::string, int> verdicts_;
 };
-
-std::string CommandOf(const Json& summary) {
-  const Json& p = summary.at("experiment");
-  std::string text = "regrasp experiment " + Plain(p.at("experiment"));
-  if (p.contains("estimators"))
-    text += fmt::format(" --estimator {}",
-                        fmt::join(p.at("estimators").get<std::vector<std::string>>(), ","));
-  if (p.contains("fingers") && p.at("fingers").size() == 1)
-    text += " --finger " + Plain(p.at("fingers").at(0));
-  if (p.contains("turns"))
-    text += fmt::format(" --turns {} --axis={}", p.at("turns").get<double>(),
-                        Plain(p.at("axes").at(0)));
-  for (const auto& [name, value] : p.at("set").items())
-    text += fmt::format(" --set {}={}", name, Plain(value));
-  return text + fmt::format(" --seed {} -n {} -o DIR", p.at("first_seed").get<std::int64_t>(),
-                            p.at("seeds").get<std::int64_t>());
-}
 
 void AddFigure2(const Json& measured, Claims* claims) {
   const Json& f = At(measured, "figure2");
@@ -129,6 +141,11 @@ void AddFigure2(const Json& measured, Claims* claims) {
               least >= f.at("threshold").get<double>() ? "yes" : "no");
   for (const char* criterion : {"manipulability", "combined"}) {
     const Json& record = f.at(criterion);
+    if (!At(record, "phi_true_initial").is_number()) {
+      claims->Add(fmt::format("Fig. 2: {} as the criterion", criterion), Plain(At(record, "error")),
+                  "no");
+      continue;
+    }
     const double from = record.at("phi_true_initial"), to = record.at("phi_true_final");
     claims->Add(fmt::format("Fig. 2: {} as the criterion", criterion),
                 fmt::format("noise-free objective {:.3f} to {:.3f} ({:+.1f} %)", from, to,
@@ -136,15 +153,17 @@ void AddFigure2(const Json& measured, Claims* claims) {
                 to > from ? "yes" : "no");
   }
   const int runs = measured.at("repeats").at("runs"), rose = measured["repeats"].at("rose");
-  claims->Add(fmt::format("“repeating … {} times using different initial gradient directions, "
-                          "always leads to a successful maximization”",
-                          50),
-              "noise-free φ rose: " + Share(rose, runs),
-              runs > 0 ? Verdict(static_cast<double>(rose) / runs) : "no");
+  claims->Add(
+      "“Repeating the exploratory motion 50 times using different initial gradient "
+      "directions, always leads to a successful maximization”",
+      fmt::format("ring finger, one start, noise-free φ rose: {}, dropped {}", Share(rose, runs),
+                  measured["repeats"].at("dropped").get<int>()),
+      runs > 0 ? Verdict(static_cast<double>(rose) / runs) : "no");
 }
 
 void AddGait(const Json& measured, Claims* claims) {
   const Json& gait = measured.at("rotate").at("exploring").at("gait");
+  const Json& record = measured["rotate"]["exploring"];
   std::string pattern;
   bool right = true;
   for (const auto& [finger, samples] : gait.at("objective").items()) {
@@ -160,8 +179,7 @@ void AddGait(const Json& measured, Claims* claims) {
   claims->Add(
       "“multiply readjusting the grasp configuration with all fingers in turn”",
       fmt::format("{} fingers explored, {} regrasps in {} turn", gait.at("objective").size(),
-                  Plain(measured["rotate"]["exploring"].at("regrasps")),
-                  Fixed(measured["rotate"]["exploring"].at("turns"), 1)),
+                  Plain(At(record, "regrasps")), Fixed(At(record, "turns"), 1)),
       gait.at("objective").size() == measured.at("hold").at("fingers") ? "yes" : "no");
   const Json &all = gait.at("stability_mean"), &without = gait.at("stability_without_next_mean");
   if (all.is_number() && without.is_number())
@@ -184,56 +202,22 @@ void AddGait(const Json& measured, Claims* claims) {
 void AddRotation(const Json& summary, const std::string& claim, Claims* claims) {
   const Json& group = summary.at("groups").at(0);
   const Json& quantiles = group.at("quantiles");
-  claims->Add(
-      claim,
-      fmt::format("{} turn completed {}, dropped {}; median {} °/min; object within {} mm, axis "
-                  "within {}°",
-                  summary.at("experiment").at("turns").get<double>(), Share(group, "completed"),
-                  Plain(group.at("counts").at("dropped").at("k")),
-                  Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
-                  Fixed(At(quantiles.at("max_position_error_m"), "max"), 1, 1e3),
-                  Fixed(At(quantiles.at("max_tilt_rad"), "max"), 1, kDegrees)),
-      Verdict(group, "completed"), CommandOf(summary));
-}
-
-std::string ExplorationTable(const Json& summary) {
-  std::string text =
-      "| finger | estimator | φ rose | within 5 % of the best | median gain | ended by the "
-      "gradient "
-      "test | dropped |\n|---|---|---|---|---|---|---|\n";
-  for (const Json& g : summary.at("groups"))
-    text += fmt::format("| {} | {} | {} | {} | {} % | {} | {} |\n", Plain(g.at("finger")),
-                        Plain(g.at("estimator")), Share(g, "rose"), Share(g, "near_best"),
-                        Fixed(At(g.at("quantiles").at("phi_true_gain"), "median"), 1, 100),
-                        Share(g, "converged"), Plain(g.at("counts").at("dropped").at("k")));
-  return text;
-}
-
-std::string SweepTable(const Json& summary, const char* count) {
-  const Json& plan = summary.at("experiment");
-  std::vector<std::string> fingers = plan.at("fingers");
-  if (fingers.size() > 1) fingers.push_back("all");
-  std::string text =
-      fmt::format("| noise | estimator | {} |\n|---|---|{}\n", fmt::join(fingers, " | "),
-                  fmt::join(std::vector<std::string>(fingers.size(), "---|"), ""));
-  for (const Json& noise : plan.at("noise"))
-    for (const Json& estimator : plan.at("estimators")) {
-      text += fmt::format("| {} | {} |", Plain(noise), Plain(estimator));
-      for (const auto& finger : fingers)
-        text += fmt::format(
-            " {} |",
-            Share(
-                GroupOf(summary, {{"noise", noise}, {"estimator", estimator}, {"finger", finger}}),
-                count));
-      text += "\n";
-    }
-  return text;
+  std::string measured = fmt::format(
+      "{} turn completed {}, dropped {}; median {} °/min; object within {} mm, axis within {}°",
+      summary.at("experiment").at("turns").get<double>(), Share(group, "completed"),
+      Plain(group.at("counts").at("dropped").at("k")),
+      Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
+      Fixed(At(quantiles.at("max_position_error_m"), "max"), 1, 1e3),
+      Fixed(At(quantiles.at("max_tilt_rad"), "max"), 1, kDegrees));
+  claims->Add(claim, measured, Verdict(group, "completed"), CommandOf(summary));
 }
 
 }  // namespace
 
 std::string ReproductionPage(const PaperResults& r) {
-  const Json& plan = r.exploration.at("experiment");
+  const Json &exploration = r.summaries.at("exploration"), &sweep = r.summaries.at("sweep");
+  const Json& displaced = r.summaries.at("displaced");
+  const Json& plan = exploration.at("experiment");
   const Json& hold = r.figures.at("hold");
   Claims claims(r.command);
   const double force = hold.at("force_n"), weight = hold.at("weight_n");
@@ -246,61 +230,103 @@ std::string ReproductionPage(const PaperResults& r) {
                  : "no");
   const std::vector<std::string> fingers = plan.at("fingers");
   const std::string every = fingers.size() > 1 ? "all" : fingers.front();
-  const Json& all = GroupOf(r.exploration, {{"estimator", "least_squares"}, {"finger", every}});
-  const Json& printed = GroupOf(r.exploration, {{"estimator", "secant"}, {"finger", every}});
+  const auto of = [&](const Json& summary, const char* estimator) {
+    return GroupOf(summary, {{"estimator", estimator}, {"finger", every}});
+  };
+  const Json all = of(exploration, "least_squares"), printed = of(exploration, "secant");
+  const Json away = of(displaced, "least_squares"), away_printed = of(displaced, "secant");
   claims.Add("Alg. 1 “estimates and follows the gradient of a smooth objective function”",
              "noise-free φ rose: " + Share(all, "rose"), Verdict(all, "rose"),
-             CommandOf(r.exploration));
+             CommandOf(exploration));
   claims.Add("… with the gradient rule as printed", "noise-free φ rose: " + Share(printed, "rose"),
-             Verdict(printed, "rose"), CommandOf(r.exploration));
+             Verdict(printed, "rose"), CommandOf(exploration));
+  claims.Add("… from starts displaced by 3 mm, where there is more to gain",
+             fmt::format("noise-free φ rose: {}; rule as printed: {}", Share(away, "rose"),
+                         Share(away_printed, "rose")),
+             Verdict(away, "rose"), CommandOf(displaced));
   claims.Add("it “searches for locally optimal contact points”",
              "noise-free φ within 5 % of the best within reach: " + Share(all, "near_best"),
-             Verdict(all, "near_best"), CommandOf(r.exploration));
+             Verdict(all, "near_best"), CommandOf(exploration));
   AddFigure2(r.figures, &claims);
-  AddRotation(r.exploring,
+  AddRotation(r.summaries.at("exploring"),
               "“continuous rotation of the object following the finger gait”, fingers explore",
               &claims);
-  AddRotation(r.returning, "the same, fingers return to their first contact (ours)", &claims);
+  AddRotation(r.summaries.at("returning"), "the same, fingers return to their first contact (ours)",
+              &claims);
   AddGait(r.figures, &claims);
   const auto noisy = [&](const char* noise) {
-    return GroupOf(r.sweep, {{"noise", noise}, {"estimator", "least_squares"}, {"finger", every}});
+    return GroupOf(sweep, {{"noise", noise}, {"estimator", "least_squares"}, {"finger", every}});
   };
-  claims.Add("feasible with “artificial noise to model real-world sensor readings”",
+  claims.Add("feasible with “artificial white noise … to model noisy real-world sensors”",
              fmt::format("φ rose at noise off {}, paper {}, coarse {}", Share(noisy("off"), "rose"),
                          Share(noisy("paper"), "rose"), Share(noisy("coarse"), "rose")),
-             Verdict(noisy("paper"), "rose"), CommandOf(r.sweep));
+             Verdict(noisy("paper"), "rose"), CommandOf(sweep));
 
-  const auto picture = [&](const char* file, const char* caption) {
-    return fmt::format("![{}]({}/{})\n\n", caption, r.data, file);
+  const auto picture = [&](const std::string& file, const std::string& caption) {
+    return fmt::format("![{}]({}/{})\n\n*{}.*\n\n", caption, r.data, file, caption);
   };
-  return fmt::format(
+  std::string text = fmt::format(
       "# Reproduction report\n\n"
       "Q. Li, R. Haschke, B. Bolder, H. Ritter, *Grasp Point Optimization for Unknown Object "
       "Manipulation in Hand Task*, claim by claim.\n\n"
-      "Measured on {} with regrasp {}, build {}, by `{}`, which wrote this page. Intervals are "
-      "Wilson's. A trial that was refused, dropped or not grasped is no success. What a trial and "
-      "a "
-      "column is: [experiments](experiments.md); where each line of the paper is in the source: "
-      "[paper map](paper_map.md).\n\n"
+      "Measured on {} with regrasp {}, build {}, by `{}`, which wrote this page. Seeds {} to {}{}; "
+      "each varies the noise and the start. Intervals are Wilson's, 95 %. "
+      "A "
+      "trial that was refused, dropped or not grasped is no success. *Noise-free* is from the "
+      "simulator, which the controller never sees. What a trial and a column is: "
+      "[experiments](experiments.md); where each line of the paper is in the source: [paper "
+      "map](paper_map.md).\n\n"
       "## Claims\n{}\n"
-      "Shown: *yes*, the claim holds in every trial; *partly*, in at least {:.0f} %; *no*, in "
-      "fewer. In all: {}.\n\n"
-      "## Figures\n{}{}{}{}"
-      "## Explorations, noise `paper`\n{}\n{}"
+      "Verdict: *yes*, the claim holds in every trial; *partly*, in at least {:.0f} %; *no*, in "
+      "fewer. In all: {}.\n\n",
+      r.date, Plain(plan.at("version")), Plain(plan.at("build")), r.command,
+      plan.at("first_seed").get<std::int64_t>(),
+      plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
+      plan.at("first_seed").get<std::int64_t>() >= kFirstFreshSeed ? " were never used while tuning"
+                                                                   : "",
+      claims.Text(), 100 * kMostly, claims.Count());
+  text += "## Figures\n";
+  text +=
+      picture("figure1.png", "Figure 1: the hand holds the sphere; arrows are true contact forces");
+  text += picture("figure2.png", "Figure 2: the ring finger explores, two criteria, one start");
+  text +=
+      picture("figure3a.png", "Figure 3a: contact points in the object's frame, fingers exploring");
+  text += picture("figure3b.png", "Figure 3b: the gait, fingers exploring");
+  text += "## Explorations\nNoise `paper`, criterion manipulability.\n\n" +
+          ExplorationTable(exploration) + "\n";
+  text += picture("exploration/summary.png", "Explorations of every finger");
+  text +=
+      "The best within reach is that of the rays of the [map](experiments.md) of each start: a "
+      "share above "
+      "100 % means that the exploration found its way to a place that no ray met.\n\n";
+  text += "From starts whose fingertips are displaced by 3 mm along the surface:\n\n" +
+          ExplorationTable(displaced) + "\n";
+  text +=
       "## Success against noise\nNoise-free φ at the end within 5 % of the best within "
-      "reach:\n\n{}\n"
-      "Noise-free φ rose:\n\n{}\n{}"
-      "## Deviations\nEvery one with its place in the source: [paper map](paper_map.md).\n{}",
-      r.date, Plain(plan.at("version")), Plain(plan.at("build")), r.command, claims.Text(),
-      100 * kMostly, claims.Count(),
-      picture("figure1.png", "Figure 1: the scene; arrows are true contact forces"),
-      picture("figure2.png", "Figure 2: the ring finger explores, two criteria"),
-      picture("figure3a.png", "Figure 3a: contact points in the object's frame"),
-      picture("figure3b.png", "Figure 3b: the gait, fingers exploring"),
-      ExplorationTable(r.exploration),
-      picture("exploration/summary.png", "Explorations with intervals"),
-      SweepTable(r.sweep, "near_best"), SweepTable(r.sweep, "rose"),
-      picture("sweep/summary.png", "Success against noise"), kDeviations);
+      "reach:\n\n" +
+      SweepTable(sweep, "near_best") + "\nNoise-free φ rose:\n\n" + SweepTable(sweep, "rose") +
+      "\nHow those that were not done ended, all fingers:\n\n" + OutcomeTable(sweep, every) + "\n";
+  text += picture("sweep/summary.png", "Success against noise");
+  if (std::any_of(r.parts.begin(), r.parts.end(),
+                  [](const PaperPart& part) { return !part.title.empty(); }))
+    text += fmt::format(
+        "## Rotations beyond the paper\n"
+        "{} turn about −z at noise `paper` where nothing else is said. *Stopped*: the gait gave up "
+        "or "
+        "was refused, the object still in the hand. *Slips*: regrasps broken off. *φ rose*: of the "
+        "regrasps that explored by manipulability and began below 98 % of the finger's best in "
+        "that "
+        "rotation, in how many it was higher at the end.\n\n",
+        r.summaries.at("returning").at("experiment").at("turns").get<double>());
+  for (const PaperPart& part : r.parts) {
+    if (part.title.empty()) continue;
+    const Json& summary = r.summaries.at(part.name);
+    text += fmt::format("### {}\n{}\n\n{}\n", part.title, part.text, RotationTable(summary));
+    text += picture(part.name + "/summary.png", part.title);
+    text += fmt::format("```\n{}\n```\n\n", CommandOf(summary));
+  }
+  text += "## Deviations\nEvery one with its place in the source: [paper map](paper_map.md).\n";
+  return text + Deviations(r.parameters);
 }
 
 }  // namespace regrasp::cli

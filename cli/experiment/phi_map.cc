@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <numbers>
 
 #include "cli/errors.h"
@@ -13,7 +14,11 @@ namespace regrasp::cli {
 namespace {
 
 constexpr std::int64_t kSampleTicks = 50;  // 0.75 mm at 15 mm/s
-constexpr double kTimeShare = 1.8;         // of the time that the way to the excursion bound takes
+// Of the time that the straight way to the excursion bound takes: a wall is slid along, slowly.
+constexpr double kTimeShare = 4;
+// A contact that moved less than this in so many samples has arrived, at the bound or in a corner.
+constexpr double kStill_m = 4e-4;
+constexpr std::size_t kStillSamples = 6;
 constexpr std::int64_t kTransferLimit = 5000;  // load transfer before and after [ticks]
 constexpr double kTick_s = 1e-3;
 
@@ -51,6 +56,7 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
                                             {"max_cycles", cycles}});
   Json begin;
   bool slid = false;
+  std::deque<std::array<double, 3>> last;
   for (std::int64_t tick = 0; tick < cycles + kTransferLimit; tick += kSampleTicks) {
     daemon->Step(kSampleTicks);
     const Json quality = daemon->Call("quality");
@@ -71,9 +77,14 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
       ++map->rays;
     }
     map->samples.push_back({{"ray", ray}, {"p_WC_m", point}, {"phi", phi}});
-    if (phi.get<double>() <= map->best) continue;
-    map->best = phi;
-    map->distance_m = Distance(Point(point), Point(begin));
+    if (phi.get<double>() > map->best) {
+      map->best = phi;
+      map->distance_m = Distance(Point(point), Point(begin));
+    }
+    last.push_back(Point(point));
+    if (last.size() <= kStillSamples) continue;
+    last.pop_front();
+    if (Distance(last.front(), last.back()) < kStill_m) return;
   }
 }
 

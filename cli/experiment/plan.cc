@@ -61,11 +61,6 @@ std::pair<int, int> Shard(const std::string& text) {
   return {static_cast<int>(i), static_cast<int>(n)};
 }
 
-/// A name stays a name, a file becomes an absolute path.
-std::string ModelName(const std::string& text) {
-  return text.find('/') == std::string::npos ? text : fs::absolute(text).string();
-}
-
 std::int64_t Integer(const Invocation& invocation, const char* key, const char* otherwise) {
   return static_cast<std::int64_t>(
       ParseNumber(invocation.Text(key, otherwise), std::string("--") + key));
@@ -74,13 +69,18 @@ std::int64_t Integer(const Invocation& invocation, const char* key, const char* 
 }  // namespace
 
 std::size_t Plan::num_units() const {
-  return noise.size() * subjects.size() * static_cast<std::size_t>(seeds);
+  return num_cases() * noise.size() * subjects.size() * static_cast<std::size_t>(seeds);
 }
 
 Unit Plan::unit(std::size_t index) const {
   const auto n = static_cast<std::size_t>(seeds);
-  return {noise[index / n / subjects.size()], subjects[index / n % subjects.size()],
-          first_seed + static_cast<std::int64_t>(index % n)};
+  const std::size_t per_noise = n * subjects.size(), per_case = per_noise * noise.size();
+  return {index / per_case, noise[index % per_case / per_noise],
+          subjects[index / n % subjects.size()], first_seed + static_cast<std::int64_t>(index % n)};
+}
+
+Setting Plan::setting(std::size_t which) const {
+  return cases.empty() ? common : Join(common, cases.at(which).setting);
 }
 
 std::vector<std::size_t> Plan::Mine() const {
@@ -101,14 +101,18 @@ std::string Plan::Command(const Unit& unit, const std::string& estimator) const 
                         criterion, estimator, rays);
   }
   text += fmt::format(" --noise {} --seed {} -n 1", unit.noise, unit.seed);
-  for (const auto& [flag, value] : {std::pair{"hand", hand}, std::pair{"object", object}})
+  for (const auto& [flag, value] : {std::pair{"hand", hand}, std::pair{"object", common.object}})
     if (!value.empty()) text += fmt::format(" --{} {}", flag, value);
-  for (const auto& [name, value] : set) text += fmt::format(" --set {}={}", name, value);
+  if (common.tilt_deg) text += fmt::format(" --tilt {}", *common.tilt_deg);
+  if (common.push_n > 0) text += fmt::format(" --push {}", common.push_n);
+  for (const auto& [name, value] : common.set) text += fmt::format(" --set {}={}", name, value);
+  if (!cases.empty()) text += fmt::format(" --case '{}'", Text(cases.at(unit.which)));
   return text + " -o trial";
 }
 
-std::vector<std::string> Plan::DaemonArguments() const {
+std::vector<std::string> Plan::DaemonArguments(std::size_t which) const {
   std::vector<std::string> words;
+  const std::string object = setting(which).object;
   for (const auto& [flag, value] : {std::pair{"--hand", hand}, std::pair{"--object", object},
                                     std::pair{"--models-dir", models_dir}})
     if (!value.empty()) words.insert(words.end(), {flag, value});
@@ -117,7 +121,7 @@ std::vector<std::string> Plan::DaemonArguments() const {
 
 Json ToJson(const Plan& p) {
   Json set = Json::object();
-  for (const auto& [name, value] : p.set) set[name] = value;
+  for (const auto& [name, value] : p.common.set) set[name] = value;
   Json json = {{"experiment", p.experiment}, {"noise", p.noise}};
   json[p.rotation() ? "axes" : "fingers"] = p.subjects;
   if (p.rotation()) {
@@ -131,8 +135,11 @@ Json ToJson(const Plan& p) {
   json["first_seed"] = p.first_seed;
   json["seeds"] = p.seeds;
   json["hand"] = p.hand;
-  json["object"] = p.object;
+  json["object"] = p.common.object;
+  if (p.common.tilt_deg) json["tilt_deg"] = *p.common.tilt_deg;
+  if (p.common.push_n > 0) json["push_n"] = p.common.push_n;
   json["set"] = set;
+  for (const Case& c : p.cases) json["cases"].push_back(Text(c));
   json["version"] = p.version;
   json["build"] = p.build;
   if (p.shards > 1) json["shard"] = fmt::format("{}/{}", p.shard, p.shards);
@@ -156,8 +163,12 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
     p.first_seed = json.at("first_seed");
     p.seeds = json.at("seeds");
     p.hand = json.at("hand");
-    p.object = json.at("object");
-    for (const auto& [name, value] : json.at("set").items()) p.set.emplace_back(name, value);
+    p.common.object = json.at("object");
+    if (json.contains("tilt_deg")) p.common.tilt_deg = json.at("tilt_deg").get<double>();
+    p.common.push_n = json.value("push_n", 0.0);
+    for (const auto& [name, value] : json.at("set").items()) p.common.set.emplace_back(name, value);
+    if (json.contains("cases"))
+      for (const std::string text : json.at("cases")) p.cases.push_back(ParseCase(text));
     p.version = json.at("version");
     p.build = json.at("build");
     if (json.contains("shard")) std::tie(p.shard, p.shards) = Shard(json.at("shard"));
@@ -214,15 +225,23 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
     p.rays = static_cast<int>(Integer(invocation, "rays", "12"));
   }
   p.hand = ModelName(invocation.Text("hand"));
-  p.object = ModelName(invocation.Text("object"));
+  p.common.object = ModelName(invocation.Text("object"));
   if (invocation.Has("models-dir"))
     p.models_dir = fs::absolute(invocation.Text("models-dir")).string();
-  for (const auto& word : Split(invocation.Text("set"), '\n')) {
-    const auto equals = word.find('=');
-    if (equals == std::string::npos || equals == 0)
-      throw CliError(kUsage, fmt::format("--set '{}' is not NAME=VALUE", word),
-                     "regrasp param list");
-    p.set.emplace_back(word.substr(0, equals), word.substr(equals + 1));
+  if (invocation.Has("tilt")) p.common.tilt_deg = ParseNumber(invocation.Text("tilt"), "--tilt");
+  p.common.push_n = ParseNumber(invocation.Text("push", "0"), "--push");
+  for (const auto& word : Split(invocation.Text("set"), '\n'))
+    p.common.set.push_back(NameAndValue(word, "--set"));
+  for (const auto& text : Split(invocation.Text("case"), '\n')) {
+    p.cases.push_back(ParseCase(text));
+    const Case& c = p.cases.back();
+    if ((c.setting.push_n != 0 || c.setting.turns) && !p.rotation())
+      throw CliError(kUsage, fmt::format("--case '{}': push and turns are for rotations", text));
+    if (c.setting.turns == 0.0)
+      throw CliError(kUsage, fmt::format("--case '{}': 0 turns leave nothing to turn", text));
+    if (std::count_if(p.cases.begin(), p.cases.end(),
+                      [&](const Case& other) { return other.name == c.name; }) > 1)
+      throw CliError(kUsage, fmt::format("two cases have the name '{}'", c.name));
   }
   if (invocation.Has("shard")) std::tie(p.shard, p.shards) = Shard(invocation.Text("shard"));
   return p;

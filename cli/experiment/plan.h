@@ -2,11 +2,13 @@
 
 /// What an experiment does, and nothing of how: no worker, no clock, no path but those of models.
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/experiment/setting.h"
 #include "cli/grammar.h"
 
 namespace regrasp::cli {
@@ -14,6 +16,7 @@ namespace regrasp::cli {
 /// One part of an experiment that is run and kept as a whole: what starts from the same state. An
 /// exploration gives a row for each estimator, a rotation one row.
 struct Unit {
+  std::size_t which = 0;  ///< of Plan::cases
   std::string noise;
   std::string subject;  ///< the finger, or the axis as "X,Y,Z"
   std::int64_t seed = 0;
@@ -27,9 +30,10 @@ struct UnitResult {
 };
 
 struct Plan {
-  std::string experiment;                ///< "exploration", "noise-sweep", "rotation"
-  std::string hand, object, models_dir;  ///< empty: the daemon's own
-  std::vector<std::pair<std::string, std::string>> set;  ///< parameters, values as typed
+  std::string experiment;        ///< "exploration", "noise-sweep", "rotation"
+  std::string hand, models_dir;  ///< empty: the daemon's own
+  Setting common;                ///< of every trial
+  std::vector<Case> cases;       ///< settings to compare; empty: `common` alone
   std::vector<std::string> noise, subjects;
   std::int64_t first_seed = 1, seeds = 0;
   std::vector<std::string> estimators;  ///< explorations
@@ -44,10 +48,15 @@ struct Plan {
   Unit unit(std::size_t index) const;
   /// Indices of the units of this shard, ascending.
   std::vector<std::size_t> Mine() const;
+  /// At least 1.
+  std::size_t num_cases() const { return std::max<std::size_t>(1, cases.size()); }
+  Setting setting(std::size_t which) const;
+  /// Rotations: turns of a case.
+  double TurnsOf(std::size_t which) const { return setting(which).turns.value_or(turns); }
   /// The command that makes the one row of this unit (and estimator) again.
   std::string Command(const Unit& unit, const std::string& estimator) const;
-  /// Arguments for the daemon.
-  std::vector<std::string> DaemonArguments() const;
+  /// Arguments for the daemon of a case.
+  std::vector<std::string> DaemonArguments(std::size_t which = 0) const;
 };
 
 /// What decides the results, as it is written in experiment.json; the inverse of PlanFromJson().

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "cli/experiment/trial.h"
@@ -16,9 +18,9 @@ namespace regrasp::cli {
 namespace {
 
 std::string Describe(const Output& out, const Json& row) {
-  std::string text;
+  std::string text = row.contains("case") ? Plain(row.at("case")) + ", " : "";
   if (row.contains("finger")) {
-    text =
+    text +=
         fmt::format("{} seed {} {} {}: {}", Plain(row.at("finger")), Plain(row.at("seed")),
                     Plain(row.at("noise")), Plain(row.at("estimator")), Plain(row.at("outcome")));
     if (row.at("phi_true_gain").is_number())
@@ -27,8 +29,8 @@ std::string Describe(const Output& out, const Json& row) {
     if (At(row, "share_of_best").is_number())
       text += fmt::format(", {} % of the best", Fixed(row.at("share_of_best"), 1, 100));
   } else {
-    text = fmt::format("axis {} seed {} {}: {}", Plain(row.at("axis_W")), Plain(row.at("seed")),
-                       Plain(row.at("noise")), Plain(row.at("outcome")));
+    text += fmt::format("axis {} seed {} {}: {}", Plain(row.at("axis_W")), Plain(row.at("seed")),
+                        Plain(row.at("noise")), Plain(row.at("outcome")));
     if (row.at("rate_deg_min").is_number())
       text += fmt::format(", {} deg/min", Fixed(row.at("rate_deg_min"), 0));
   }
@@ -99,8 +101,8 @@ void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
   std::exception_ptr failure;
   const auto work = [&] {
     try {
-      SteppedDaemon daemon(plan.DaemonArguments());
-      Prepare(&daemon, plan);
+      std::optional<std::size_t> prepared;  // the case that the daemon is for
+      std::unique_ptr<SteppedDaemon> daemon;
       while (true) {
         std::size_t unit = 0;
         {
@@ -108,7 +110,14 @@ void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
           if (next == left.size() || failure) return;
           unit = left[next++];
         }
-        const UnitResult result = RunUnit(&daemon, plan, plan.unit(unit));
+        const Unit what = plan.unit(unit);
+        if (prepared != what.which) {
+          daemon.reset();
+          daemon = std::make_unique<SteppedDaemon>(plan.DaemonArguments(what.which));
+          Prepare(daemon.get(), plan, what.which);
+          prepared = what.which;
+        }
+        const UnitResult result = RunUnit(daemon.get(), plan, what);
         const std::lock_guard lock(mutex);
         store->Add(unit, result);
         progress.Finished(result.rows);

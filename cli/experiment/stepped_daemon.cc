@@ -46,10 +46,10 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
   Json record;
   for (std::int64_t ticks = 0; ticks < max_ticks; ticks += chunk_ticks) {
     Step(chunk_ticks);
-    if (look) look();
     // Paused it is already: the answer comes when all that the last tick did has been told, a job
     // that ended among it.
     Call("pause");
+    if (look) look();
     record = Call("job.get", {{"id", job.at("job")}});
     if (!Running(record)) break;
   }

@@ -24,8 +24,8 @@ struct Columns {
 Columns ColumnsOf(const Plan& plan) {
   if (plan.rotation())
     return {{"completed"},
-            {"rate_deg_min", "max_position_error_m", "max_tilt_rad", "angle_error_rad", "regrasps",
-             "sim_time_s"}};
+            {"rate_deg_min", "max_position_error_m", "max_tilt_rad", "angle_rad", "angle_error_rad",
+             "regrasps", "slips", "refusals", "phi_rise_share", "phi_gain_mean", "sim_time_s"}};
   Columns columns = {{"rose"}, {"phi_true_gain", "cycles", "path_length_m", "object_moved_m"}};
   if (plan.rays > 0) {
     columns.counts.push_back("near_best");
@@ -139,8 +139,8 @@ std::string MapsCsv(const Trials& trials) {
   for (const auto& [unit, result] : trials)
     for (const Json& sample : result.map) {
       Json row;
-      for (const char* key : {"finger", "criterion", "noise", "object", "seed"})
-        row[key] = result.rows.front().at(key);
+      for (const char* key : {"case", "finger", "criterion", "noise", "object", "seed"})
+        if (result.rows.front().contains(key)) row[key] = result.rows.front().at(key);
       row.update(sample);
       text += table.Row(row);
     }
@@ -157,23 +157,31 @@ Json Summary(const Plan& plan, const Trials& trials) {
     group.update(Group(columns, RowsWhere(trials, wanted)));
     groups.push_back(group);
   };
-  for (const auto& noise : plan.noise) {
-    if (plan.rotation()) {
-      for (const auto& axis : plan.subjects)
-        add({{"noise", noise}, {"axis_W", axis}}, {{"noise", noise}, {"axis_W", axis}});
-      continue;
+  const auto add_case = [&](const Json& name) {
+    for (const auto& noise : plan.noise) {
+      if (plan.rotation()) {
+        for (const auto& axis : plan.subjects) {
+          Json cell = name;
+          cell.update({{"noise", noise}, {"axis_W", axis}});
+          add(cell, cell);
+        }
+        continue;
+      }
+      for (const auto& estimator : plan.estimators) {
+        Json cell = name;
+        cell.update({{"noise", noise}, {"estimator", estimator}});
+        const auto with = [&cell](const std::string& finger) {
+          Json json = cell;
+          json["finger"] = finger;
+          return json;
+        };
+        for (const auto& finger : plan.subjects) add(with(finger), with(finger));
+        if (plan.subjects.size() > 1) add(with("all"), cell);
+      }
     }
-    for (const auto& estimator : plan.estimators) {
-      const Json cell = {{"noise", noise}, {"estimator", estimator}};
-      const auto with = [&cell](const std::string& finger) {
-        Json json = cell;
-        json["finger"] = finger;
-        return json;
-      };
-      for (const auto& finger : plan.subjects) add(with(finger), with(finger));
-      if (plan.subjects.size() > 1) add(with("all"), cell);
-    }
-  }
+  };
+  if (plan.cases.empty()) add_case(Json::object());
+  for (const Case& c : plan.cases) add_case({{"case", c.name}});
   return {{"experiment", ToJson(plan)}, {"trials", n}, {"groups", groups}};
 }
 
@@ -181,7 +189,9 @@ std::string SummaryTable(const Output& out, const Json& summary) {
   const Json& plan = summary.at("experiment");
   const bool rotation = plan.at("experiment") == "rotation";
   const bool map = At(plan, "rays").is_number() && plan.at("rays").get<int>() > 0;
+  const bool cases = plan.contains("cases");
   std::vector<std::string> titles = {"noise"};
+  if (cases) titles.insert(titles.begin(), "case");
   if (rotation)
     titles.insert(titles.end(), {"axis", "completed (95 %)", ">deg/min", ">offset mm", ">dropped"});
   else
@@ -196,6 +206,7 @@ std::string SummaryTable(const Output& out, const Json& summary) {
       return counts.contains(name) ? Plain(counts[name].at("k")) : "0";
     };
     std::vector<std::string> cells = {group.at("noise")};
+    if (cases) cells.insert(cells.begin(), group.at("case"));
     if (rotation) {
       cells.insert(cells.end(), {group.at("axis_W"), Share(counts.at("completed"), n),
                                  Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),

@@ -5,8 +5,10 @@
 #include <optional>
 
 #include "cli/errors.h"
+#include "cli/experiment/gait_events.h"
 #include "cli/experiment/phi_map.h"
 #include "cli/print.h"
+#include "core/common/random.h"
 
 namespace regrasp::cli {
 namespace {
@@ -15,6 +17,8 @@ constexpr std::int64_t kExploreChunk = 250, kExploreLimit = 60000;  // [ticks]
 constexpr std::int64_t kRotateChunk = 1000;
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
 constexpr std::int64_t kHoldTicks = 1000;
+constexpr double kPush_s = 0.1;
+constexpr std::uint64_t kPushStream = 3000;  // as `claims rotate --push` of bench/
 
 /// How a trial ended, in one word. `record`: of the job that was tried.
 std::string Outcome(const Json& record, const std::string& state) {
@@ -46,15 +50,26 @@ void AddEnd(SteppedDaemon* daemon, const Plan& plan, const Unit& unit, const std
   (*row)["command"] = plan.Command(unit, estimator);
 }
 
+/// The column that comes first where cases are compared.
+Json Head(const Plan& plan, const Unit& unit) {
+  if (plan.cases.empty()) return Json::object();
+  return {{"case", plan.cases.at(unit.which).name}};
+}
+
 Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
              const std::string& estimator, const std::optional<PhiMap>& map) {
   daemon->Call("noise.set", {{"preset", unit.noise}});
   const Json grasp = daemon->Grasp(unit.seed);
   Json status = daemon->Call("status");
-  Json row = {{"finger", unit.subject},         {"criterion", plan.criterion},
-              {"estimator", estimator},         {"noise", unit.noise},
-              {"object", At(status, "object")}, {"seed", unit.seed},
-              {"outcome", "not_grasped"},       {"error", At(grasp, "error")}};
+  Json row = Head(plan, unit);
+  row.update({{"finger", unit.subject},
+              {"criterion", plan.criterion},
+              {"estimator", estimator},
+              {"noise", unit.noise},
+              {"object", At(status, "object")},
+              {"seed", unit.seed},
+              {"outcome", "not_grasped"},
+              {"error", At(grasp, "error")}});
   Json record, moved;
   if (Done(grasp)) {
     const Json before = ObjectPlace(daemon);
@@ -92,20 +107,39 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
   return row;
 }
 
+void Push(SteppedDaemon* daemon, const Eigen::Vector3d& force_W) {
+  daemon->Call("push",
+               {{"force_n", {force_W.x(), force_W.y(), force_W.z()}}, {"duration_s", kPush_s}});
+}
+
 Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
   daemon->Call("noise.set", {{"preset", unit.noise}});
   const Json grasp = daemon->Grasp(unit.seed);
   Json status = daemon->Call("status");
-  Json row = {{"axis_W", unit.subject},         {"turns", plan.turns}, {"noise", unit.noise},
-              {"object", At(status, "object")}, {"seed", unit.seed},   {"outcome", "not_grasped"},
-              {"error", At(grasp, "error")}};
+  const double turns_wanted = plan.TurnsOf(unit.which);
+  Json row = Head(plan, unit);
+  row.update({{"axis_W", unit.subject},
+              {"turns", turns_wanted},
+              {"noise", unit.noise},
+              {"object", At(status, "object")},
+              {"seed", unit.seed},
+              {"outcome", "not_grasped"},
+              {"error", At(grasp, "error")}});
   Json record;
+  GaitEvents events(daemon);
+  const double push_n = plan.setting(unit.which).push_n;
+  RandomStream pushes(static_cast<std::uint64_t>(unit.seed), kPushStream);
   if (Done(grasp)) {
-    Json params = {{"turns", plan.turns}, {"axis", ParseNumbers(unit.subject, 3, "--axis")}};
+    Json params = {{"turns", turns_wanted}, {"axis", ParseNumbers(unit.subject, 3, "--axis")}};
     if (plan.speed_deg_s > 0) params["speed_rad_s"] = plan.speed_deg_s * std::numbers::pi / 180;
     record = daemon->Run(
         "rotate", params, kRotateChunk,
-        kRotateLimit + static_cast<std::int64_t>(std::abs(plan.turns) * kRotateLimitPerTurn));
+        kRotateLimit + static_cast<std::int64_t>(std::abs(turns_wanted) * kRotateLimitPerTurn),
+        [&] {
+          events.Read();
+          if (push_n > 0 && At(daemon->Call("status"), "state") == "rotating")
+            Push(daemon, push_n * pushes.Normal3().normalized());
+        });
     status = daemon->Call("status");
     row["outcome"] = Outcome(record, Plain(At(status, "state")));
     row["error"] = At(record, "error");
@@ -117,25 +151,27 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
   const double angle = turned ? record.at("angle_rad").get<double>() : 0;
   const double time = turned ? record.at("sim_time_s").get<double>() : 0;
   row["angle_error_rad"] =
-      turned ? Json(std::abs(angle - 2 * std::numbers::pi * plan.turns)) : Json();
+      turned ? Json(std::abs(angle - 2 * std::numbers::pi * turns_wanted)) : Json();
+  const bool completed = row["outcome"] == "done";
   row["rate_deg_min"] =
-      time > 0 ? Json(std::abs(angle) * 180 / std::numbers::pi / time * 60) : Json();
-  row["completed"] = row["outcome"] == "done";
+      completed && time > 0 ? Json(std::abs(angle) * 180 / std::numbers::pi / time * 60) : Json();
+  row["completed"] = completed;
+  const GaitEvents::Counts counts = events.Count();
+  row["slips"] = turned ? Json(counts.slips) : Json();
+  row["refusals"] = turned ? Json(counts.refusals) : Json();
+  const bool low = counts.low > 0;
+  row["phi_regrasps"] = turned ? Json(counts.low) : Json();
+  row["phi_rise_share"] = low ? Json(static_cast<double>(counts.low_rose) / counts.low) : Json();
+  row["phi_gain_mean"] = counts.explored > 0 ? Json(counts.gain_sum / counts.explored) : Json();
   AddEnd(daemon, plan, unit, "", record, &row);
   return row;
 }
 
-/// A number or three, as `param set` takes them.
-Json Value(const std::string& text, const std::string& name) {
-  if (text.find(',') == std::string::npos) return ParseNumber(text, "--set " + name);
-  return ParseNumbers(text, 3, "--set " + name);
-}
-
 }  // namespace
 
-void Prepare(SteppedDaemon* daemon, const Plan& plan) {
-  for (const auto& [name, value] : plan.set)
-    daemon->Call("param.set", {{"name", name}, {"value", Value(value, name)}});
+void Prepare(SteppedDaemon* daemon, const Plan& plan, std::size_t which) {
+  for (const auto& [name, value] : Parameters(plan.setting(which)))
+    daemon->Call("param.set", {{"name", name}, {"value", value}});
 }
 
 UnitResult RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {

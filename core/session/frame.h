@@ -105,6 +105,9 @@ struct Event {
   EventKind kind = EventKind::kState;
   int finger = -1;
   double value = 0;
+  /// kRegrasp of a finger that explored by manipulability: noise-free objective where it began to
+  /// explore (`value` is that at its end); else 0.
+  double from = 0;
   char text[96] = {};  ///< one plain sentence
 };
 

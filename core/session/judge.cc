@@ -129,6 +129,10 @@ void Session::Impl::ReportGait() {
          regrasp.on_stability || regrasp.criterion == Criterion::kStability ? "stability"
                                                                             : "manipulability",
          regrasp.phi_before, regrasp.phi_after);
+    const bool on_manipulability =
+        regrasp.criterion != Criterion::kStability && !regrasp.on_stability;
+    if (gait.regrasp().request().explore && on_manipulability && !regrasp.aborted)
+      events.back().from = regrasp.phi_start;
   }
   if (happened.regrasp_began) {
     regrasp = RegraspRecord();

@@ -146,9 +146,53 @@ class Results(ExperimentCase):
                          [("off", "least_squares"), ("off", "secant"), ("paper", "least_squares"), ("paper", "secant")])
 
 
+class Cases(ExperimentCase):
+    TURN = ["rotation", "--angle", "15", "-n", "1", "--models-dir", SOURCE / "models"]
+    CASES = ["--case", "as it is:", "--case", "egg, pushed: object=egg push=0.5 object.mass_kg=0.05", "--case", "tilt=45"]
+
+    def test_cases_do_not_touch_each_other(self):
+        self.run_experiment(*self.TURN, *self.CASES, "--workers", "1", "-o", self.dir / "one")
+        self.run_experiment(*self.TURN, *self.CASES, "--workers", "2", "-o", self.dir / "two")
+        self.assert_same_results("one", "two")
+        rows = self.rows("one")
+        self.assertEqual([(row["case"], row["object"]) for row in rows], [("as it is", "sphere"), ("egg, pushed", "egg"), ("tilt=45", "sphere")])
+        self.assertEqual(len({row["state_hash"] for row in rows}), 3)
+        self.assertEqual([group["case"] for group in self.summary("one")["groups"]], [row["case"] for row in rows])
+        # A case that changes nothing is the experiment without cases; --tilt is the case.
+        for words, row in [([], rows[0]), (["--tilt", "45"], rows[2])]:
+            self.run_experiment(*self.TURN, *words, "-o", self.dir / ("alone" + "".join(words)))
+            (alone,) = self.rows("alone" + "".join(words))
+            self.assertEqual(alone["state_hash"], row["state_hash"])
+        words = shlex.split(rows[1]["command"])
+        words[words.index("-o") + 1] = self.dir / "single"
+        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.assertEqual(self.rows("single"), [rows[1]])
+
+    def test_bad_cases_make_no_directory(self):
+        out = ["--models-dir", SOURCE / "models", "-o", self.dir / "none"]
+        for words, part in [(["rotation", "--case", "a: tilt"], "'tilt' is not NAME=VALUE"), (["rotation", "--case", ": tilt=3"], "no name"),
+                            (["rotation", "--case", "a:", "--case", "a: tilt=3"], "two cases have the name 'a'"),
+                            (["exploration", "--case", "a: push=1"], "push and turns are for rotations"), (["rotation", "--push", "-1"], "--push")]:
+            with self.subTest(words):
+                self.assertIn(part, self.refused_experiment(2, *words, *out))
+        self.assertIn("gait.mod", self.refused_experiment(6, "rotation", "--case", "a:", "--case", "b: gait.mod=3", *out))
+        self.assertFalse((self.dir / "none").exists())
+
+
 class Paper(ExperimentCase):
+    SMALL_PAPER = ["paper", "-n", "1", "--repeats", "1", "--turns", "0.1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models"]
+
+    def test_every_part_is_accepted_before_the_first_runs(self):
+        words = [REGRASP, "experiment", *self.SMALL_PAPER, "-o", self.dir / "cut"]
+        with subprocess.Popen(list(map(str, words)), env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            first = process.stderr.readline()
+            self.assertEqual(first, "exploration (1 of 12)\n")
+            process.send_signal(signal.SIGINT)
+            _, stderr = process.communicate(timeout=HANG_S)
+        self.assertEqual(process.returncode, 130, stderr)
+
     def test_one_command_writes_the_page(self):
-        self.run_experiment("paper", "-n", "1", "--repeats", "1", "--turns", "0.1", "--rays", "2", "--finger", "ring", "--models-dir", SOURCE / "models", "-o", self.dir)
+        self.run_experiment(*self.SMALL_PAPER, "--only-paper", "-o", self.dir)
         page = (self.dir / "reproduction.md").read_text()
         for picture in re.findall(r"\]\((reproduction/[^)]*\.png)\)", page):
             self.assertTrue((self.dir / picture).read_bytes().startswith(b"\x89PNG"), picture)

@@ -1,0 +1,96 @@
+#include "cli/experiment/setting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <sstream>
+
+#include "cli/errors.h"
+#include "cli/grammar.h"
+
+namespace regrasp::cli {
+namespace {
+
+constexpr double kGravity = 9.81;  // [m/s2], as in the scenario
+
+/// A number or three, as `param set` takes them.
+Json Value(const std::string& text, const std::string& name) {
+  if (text.find(',') == std::string::npos) return ParseNumber(text, "--set " + name);
+  return ParseNumbers(text, 3, "--set " + name);
+}
+
+}  // namespace
+
+std::string ModelName(const std::string& text) {
+  return text.find('/') == std::string::npos ? text : std::filesystem::absolute(text).string();
+}
+
+std::pair<std::string, std::string> NameAndValue(const std::string& word, const char* flag) {
+  const auto equals = word.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw CliError(kUsage, fmt::format("{} '{}' is not NAME=VALUE", flag, word),
+                   "regrasp param list");
+  return {word.substr(0, equals), word.substr(equals + 1)};
+}
+
+Case ParseCase(const std::string& text) {
+  Case c;
+  const auto colon = text.find(':');
+  c.name = text.substr(0, colon);
+  if (c.name.empty() || c.name.find_first_of("'\n") != std::string::npos)
+    throw CliError(kUsage, fmt::format("--case '{}' has no name without quotes", text),
+                   "regrasp experiment rotation --case 'upright: tilt=90' -o DIR");
+  std::istringstream words(colon == std::string::npos ? text : text.substr(colon + 1));
+  for (std::string word; words >> word;) {
+    const auto [key, value] = NameAndValue(word, "--case");
+    if (key == "object")
+      c.setting.object = ModelName(value);
+    else if (key == "tilt")
+      c.setting.tilt_deg = ParseNumber(value, "--case tilt");
+    else if (key == "push")
+      c.setting.push_n = ParseNumber(value, "--case push");
+    else if (key == "turns")
+      c.setting.turns = ParseNumber(value, "--case turns");
+    else
+      c.setting.set.emplace_back(key, value);
+  }
+  return c;
+}
+
+std::string Text(const Case& c) {
+  std::string text = c.name + ":";
+  if (!c.setting.object.empty()) text += " object=" + c.setting.object;
+  if (c.setting.tilt_deg) text += fmt::format(" tilt={}", *c.setting.tilt_deg);
+  if (c.setting.push_n != 0) text += fmt::format(" push={}", c.setting.push_n);
+  if (c.setting.turns) text += fmt::format(" turns={}", *c.setting.turns);
+  for (const auto& [name, value] : c.setting.set) text += fmt::format(" {}={}", name, value);
+  return text;
+}
+
+Setting Join(Setting common, const Setting& special) {
+  if (!special.object.empty()) common.object = special.object;
+  if (special.tilt_deg) common.tilt_deg = special.tilt_deg;
+  if (special.push_n != 0) common.push_n = special.push_n;
+  if (special.turns) common.turns = special.turns;
+  for (const auto& [name, value] : special.set) {
+    std::erase_if(common.set, [&name = name](const auto& item) { return item.first == name; });
+    common.set.emplace_back(name, value);
+  }
+  return common;
+}
+
+std::vector<std::pair<std::string, Json>> Parameters(const Setting& setting) {
+  std::vector<std::pair<std::string, Json>> parameters;
+  if (setting.tilt_deg) {
+    const double tilt = *setting.tilt_deg * std::numbers::pi / 180;
+    parameters.emplace_back(
+        "gravity", std::vector<double>{0, kGravity * std::cos(tilt), kGravity * std::sin(tilt)});
+  }
+  for (const auto& [name, value] : setting.set) parameters.emplace_back(name, Value(value, name));
+  return parameters;
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,46 @@
+#pragma once
+
+/// What a trial has otherwise than the scenario.
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/client.h"
+
+namespace regrasp::cli {
+
+struct Setting {
+  std::string object;              ///< name or absolute path; empty: the scenario's
+  std::optional<double> tilt_deg;  ///< 0 palm up, 90 fingers down; none: the scenario's
+  double push_n = 0;               ///< rotations: a push in a random direction, every second
+  std::optional<double> turns;     ///< rotations, in a case: instead of the plan's
+  std::vector<std::pair<std::string, std::string>> set;  ///< parameters, values as typed
+};
+
+/// One of several settings that an experiment compares.
+struct Case {
+  std::string name;
+  Setting setting;
+};
+
+/// "NAME: KEY=VALUE ..." or "KEY=VALUE ..." (which is then the name, too). KEY is object, tilt,
+/// push, turns or a parameter; "NAME:" alone changes nothing. Throws CliError(kUsage).
+Case ParseCase(const std::string& text);
+/// The inverse: ParseCase(Text(c)) is c.
+std::string Text(const Case& c);
+
+/// `common` with what `special` says differently.
+Setting Join(Setting common, const Setting& special);
+
+/// Parameters as `param set` takes them, the tilt among them as gravity: of the scenario's
+/// strength, in the plane of W's y and z. Throws CliError(kUsage) where a value is no number.
+std::vector<std::pair<std::string, Json>> Parameters(const Setting& setting);
+
+/// A name stays a name, a file becomes an absolute path.
+std::string ModelName(const std::string& text);
+/// "NAME=VALUE" in its two parts. Throws CliError(kUsage) that names `flag`.
+std::pair<std::string, std::string> NameAndValue(const std::string& word, const char* flag);
+
+}  // namespace regrasp::cli

@@ -1,0 +1,57 @@
+#include "snapshots/experiment_marks.h"
+
+#include <algorithm>
+#include <array>
+
+namespace regrasp {
+
+std::vector<std::string> Distinct(const ExperimentPicture& picture,
+                                  std::string ExperimentGroup::*field) {
+  std::vector<std::string> names;
+  for (const auto& group : picture.groups)
+    if (std::find(names.begin(), names.end(), group.*field) == names.end())
+      names.push_back(group.*field);
+  return names;
+}
+
+std::size_t IndexOf(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+Colour ColourOfSeries(std::size_t series) {
+  constexpr std::array kColours = {kBlue, kVermillion, kGreen, kPurple};
+  return kColours[series % kColours.size()];
+}
+
+void DrawShareMark(Canvas* canvas, Point2 at, std::size_t which, Colour colour) {
+  if (which == 0)
+    canvas->Mark(Marker::kDisc, at, 6, colour);
+  else
+    canvas->Mark(Marker::kSquare, at, 6, colour, kWhite);
+}
+
+void DrawMarkLegend(Canvas* canvas, const ExperimentPicture& picture,
+                    const std::vector<std::string>& series, bool boxes) {
+  double x = 40;
+  const auto entry = [&](const std::string& text, auto&& draw) {
+    draw(Point2{x + 12, 112});
+    canvas->Text({x + 32, 112}, text, {.size = 17});
+    x += 60 + canvas->TextWidth(text, 17);
+  };
+  for (std::size_t m = 0; m < picture.groups.front().shares.size(); ++m)
+    entry(picture.groups.front().shares[m].name,
+          [&](Point2 at) { DrawShareMark(canvas, at, m, kInk); });
+  if (series.size() > 1)
+    for (std::size_t s = 0; s < series.size(); ++s)
+      entry(series[s], [&](Point2 at) {
+        canvas->FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
+      });
+  if (boxes)
+    entry("5, 25, 50, 75, 95 % of the trials", [&](Point2 at) {
+      canvas->Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
+      canvas->FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));
+      canvas->Line({at.x, at.y - 9}, {at.x, at.y + 9}, {kGrey, 3});
+    });
+}
+
+}  // namespace regrasp
