@@ -2,27 +2,23 @@
 
 #include <unistd.h>
 
-#include <cstdlib>
-
 #include "cli/context.h"
 
 namespace regrasp::cli {
 
 ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& defaults,
                  const std::string& where) {
-  const char* no_color = std::getenv("NO_COLOR");
-  const bool color = ::isatty(STDERR_FILENO) == 1 && (no_color == nullptr || *no_color == '\0') &&
-                     defaults.color != ColorMode::kNever;
+  GlobalOptions options = defaults;
   std::vector<const char*> argv = {"regrasp"};
   for (const auto& word : words) argv.push_back(word.c_str());
   const int argc = static_cast<int>(argv.size());
   const auto fail = [&](const CliError& error) {
     const CliError placed(error.code, where + error.what(), error.hint, error.rpc_code);
-    PrintError(placed, defaults.json || WantsJson(argc, argv.data()), color);
+    PrintError(placed, defaults.json || WantsJson(argc, argv.data()),
+               WantsColor(options.color, STDERR_FILENO));
     return error.code;
   };
   try {
-    GlobalOptions options = defaults;
     const Invocation invocation = Parse(argc, argv.data(), &options);
     Context context(options);
     ExitCode code = kOk;

@@ -111,6 +111,18 @@ class Start(Case):
         self.assertNotIn("\x1b[", self.expect(0, "help").stdout)
         self.assertIn("\x1b[", self.expect(0, "--color", "always", "help").stdout)
 
+    def test_colour_of_errors_too(self):
+        def coloured(*words, **env):
+            terminal = Terminal([REGRASP, "status", *words], environment(**{"TERM": "xterm", "REGRASP_SOCKET": str(self.socket), **env}))
+            self.assertEqual(terminal.finish(), 3)
+            return "\x1b[" in terminal.text
+        self.assertTrue(coloured())
+        self.assertFalse(coloured(NO_COLOR="1"))
+        self.assertFalse(coloured(TERM="dumb"))
+        self.assertFalse(coloured("--color", "never"))
+        self.assertNotIn("\x1b[", self.expect(3, "status").stderr)
+        self.assertIn("\x1b[", self.expect(3, "--color", "always", "status").stderr)
+
 
 class Evaluate(Case):
     def write(self, text):
