@@ -2,6 +2,7 @@
 
 import json
 import os
+import pwd
 import socket
 import subprocess
 import unittest
@@ -63,8 +64,15 @@ class Sockets(Case):
         self.dir.chmod(0o755)
         done = self.as_nobody("-s", str(self.socket), "status", env=environment())
         self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
-        self.assertIn(f"not allowed to open {self.socket}", done.stderr)
-        self.assertIn("the user who started the daemon", done.stderr)
+        owner = pwd.getpwuid(os.geteuid()).pw_name
+        self.assertIn(f"not allowed to open {self.socket}: it belongs to {owner}", done.stderr)
+        self.assertIn(f"try: regrasp up    (a daemon of your own; or run as {owner})", done.stderr)
+        # Where the directory is closed too, nobody can tell whose it is.
+        self.socket.parent.chmod(0)
+        done = self.as_nobody("-s", str(self.socket), "status", env=environment())
+        self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
+        self.assertIn("run as the user who started this one", done.stderr)
+        self.socket.parent.chmod(0o755)
 
     def test_a_directory_of_another_user_is_not_trusted(self):
         if os.geteuid() != 0:

@@ -3,11 +3,12 @@
 import json
 import os
 import pathlib
+import signal
 import stat
 import subprocess
 import unittest
 
-from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, Terminal, environment
+from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, Terminal, environment, wait_until_it_minds
 
 PNG = b"\x89PNG\r\n\x1a\n"
 FINGERS = ["first", "middle", "ring", "little", "thumb"]
@@ -182,9 +183,8 @@ class Scripted(DaemonCase):
         self.expect(0, "grasp")
         process = subprocess.Popen([str(REGRASP), "-s", str(self.socket), "job", "wait", "1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                    env=environment())
-        while self.json("status")["clients"] < 2:  # its own connection and the waiting one
-            self.assertIsNone(process.poll())
-        process.send_signal(2)
+        wait_until_it_minds(process, signal.SIGINT)
+        process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=HANG_S)
         self.assertEqual((process.returncode, out), (130, ""))
         self.assertIn("job 1 goes on", err)
