@@ -72,11 +72,12 @@ class Session(DaemonCase):
     def test_every_answer_is_readable_at_80_columns(self):
         self.expect(0, "grasp", "--wait")
         for words in (["status"], ["contacts"], ["joints"], ["quality"], ["truth"], ["job", "list"], ["job", "show", "1"], ["noise", "show"], ["param", "list"],
-                      ["param", "get", "gravity"], ["events"], ["explore", "ring"], ["stop"]):
+                      ["param", "get", "gravity"], ["param", "get", "object.friction"], ["events"], ["explore", "ring"], ["stop"]):
             with self.subTest(words):
                 text = self.expect(0, *words).stdout
                 self.assertTrue(text)
                 for line in text.splitlines():
+                    self.assertEqual(line, line.rstrip())
                     if str(self.socket) not in line:
                         self.assertLessEqual(len(line), 80, line)
 
