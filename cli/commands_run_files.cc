@@ -1,7 +1,6 @@
 // Run files: recording is the daemon's, the rest is done by regrasp-run.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -71,19 +70,10 @@ std::string FindRun(Context& context, const std::string& name) {
                  "regrasp record list");
 }
 
-std::string FindProgram() {
-  std::error_code ignored;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& path : {bin / "regrasp-run", bin / REGRASP_LIBEXEC_FROM_BIN "/regrasp-run"})
-    if (::access(path.c_str(), X_OK) == 0) return path;
-  throw CliError(kNotFound, fmt::format("no regrasp-run beside {}", (bin / "regrasp").string()),
-                 "regrasp doctor");
-}
-
 ExitCode Run(Context& context, const Invocation& invocation,
              const std::vector<std::string>& defaults = {}) {
   const std::string file = FindRun(context, invocation.Text("run"));
-  std::vector<std::string> arguments = {FindProgram(), invocation.command->words, file};
+  std::vector<std::string> arguments = {FindHelper("regrasp-run"), invocation.command->words, file};
   arguments.insert(arguments.end(), defaults.begin(), defaults.end());
   for (const Arg& arg : invocation.command->args) {
     if (arg.key == "run" || !invocation.Has(arg.key)) continue;

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 
 #include "cli/errors.h"
 
@@ -36,6 +37,16 @@ void Collect(std::array<pollfd, 2> ends, std::array<std::string*, 2> texts) {
 }
 
 }  // namespace
+
+std::string FindHelper(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const fs::path& path : {bin / name, bin / REGRASP_LIBEXEC_FROM_BIN / name})
+    if (::access(path.c_str(), X_OK) == 0) return path;
+  throw CliError(kNotFound, fmt::format("no {} beside {}", name, (bin / "regrasp").string()),
+                 "regrasp doctor");
+}
 
 pid_t Start(const std::vector<std::string>& words, const posix_spawn_file_actions_t* actions) {
   std::vector<std::string> copy = words;

@@ -14,6 +14,10 @@ struct Finished {
   std::string out, err;  ///< what it wrote
 };
 
+/// A program of ours that `regrasp` runs because it links what this one does not: beside it, or
+/// installed in libexec. Throws CliError(kNotFound).
+std::string FindHelper(const std::string& name);
+
 /// Starts `words` (the first is looked for in $PATH), with no signal blocked whatever this program
 /// waits for: Ctrl-C ends both. Throws CliError(kNotFound) when it cannot be started.
 pid_t Start(const std::vector<std::string>& words,
