@@ -5,6 +5,20 @@
 #include "cli/context.h"
 
 namespace regrasp::cli {
+namespace {
+
+/// The daemon's refusals are for any client: where its hint is no command, it belongs to the cause,
+/// and the next command is found here.
+CliError ForPeople(const CliError& error, const std::string& words) {
+  if (error.rpc_code == 0 || error.hint.starts_with("regrasp")) return error;
+  const std::string next = words.starts_with("job ")     ? "regrasp job list"
+                           : words.starts_with("param ") ? "regrasp param list"
+                                                         : "regrasp help " + words;
+  const std::string cause = error.what();
+  return {error.code, error.hint.empty() ? cause : cause + "; " + error.hint, next, error.rpc_code};
+}
+
+}  // namespace
 
 ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& defaults,
                  const std::string& where) {
@@ -29,7 +43,7 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
       if (error.code == kUsage && error.hint.empty()) {
         error.hint = "regrasp help " + invocation.command->words;
       }
-      throw;
+      throw ForPeople(error, invocation.command->words);
     }
     context.out().Flush();
     return code;

@@ -15,6 +15,7 @@
 #include "core/common/nearest_name.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
+#include "core/protocol/standard_files.h"
 #include "daemon/bench.h"
 #include "daemon/config.h"
 #include "daemon/daemon.h"
@@ -199,4 +200,7 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace regrasp
 
-int main(int argc, char** argv) { return regrasp::Main(argc, argv); }
+int main(int argc, char** argv) {
+  regrasp::OccupyStandardFiles();
+  return regrasp::Main(argc, argv);
+}

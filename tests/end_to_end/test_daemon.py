@@ -98,6 +98,17 @@ class Session(DaemonCase):
         self.refused(8, "call", "nonsense")
         self.refused(2, "call", "status", '{"x": 1}')
         self.refused(5, "step", "10")
+        # What to try is a command; what the daemon hints at is part of the cause.
+        for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.01 ... 1", "regrasp param list"),
+                                          (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
+                                          (["reset", "--object", "eg"], "did you mean 'egg'?", "regrasp help reset"),
+                                          (["job", "show", "99"], "no job 99", "regrasp job list"),
+                                          (["call", "status", '{"x": 1}'], "status takes no parameters", "regrasp help call")]:
+            with self.subTest(words):
+                done = self.regrasp(*words)
+                cause, hint = done.stderr.splitlines()
+                self.assertIn(part, cause)
+                self.assertEqual(hint, f"  try: {next_command}")
         self.assertEqual(self.json("status")["state"], "idle")
 
     def test_noise_and_parameters_take_effect(self):
