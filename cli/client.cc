@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <pwd.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -36,8 +37,16 @@ sockaddr_un Address(const std::string& path) {
   struct stat info;
   const bool exists = ::stat(path.c_str(), &info) == 0;
   if (error == EACCES || error == EPERM) {
-    throw CliError(kPermission, fmt::format("not allowed to open {}", path),
-                   "regrasp doctor    (or run as the user who started the daemon)");
+    // Where even the directory is closed, nothing is known about the socket.
+    const passwd* owner = exists ? ::getpwuid(info.st_uid) : nullptr;
+    const std::string who = owner != nullptr ? owner->pw_name
+                            : exists         ? "user " + std::to_string(info.st_uid)
+                                             : "";
+    throw CliError(kPermission,
+                   fmt::format("not allowed to open {}{}", path,
+                               who.empty() ? "" : fmt::format(": it belongs to {}", who)),
+                   fmt::format("regrasp up    (a daemon of your own; or run as {})",
+                               who.empty() ? "the user who started this one" : who));
   }
   if (exists && !S_ISSOCK(info.st_mode)) {
     throw CliError(kNoDaemon, fmt::format("{} is not a socket", path),

@@ -115,8 +115,9 @@ std::string Range(const Json& p) {
 }
 
 void PrintParameter(Output& out, const Json& p) {
-  out.Line(fmt::format("{} = {} {}", out.Paint(Plain(At(p, "name")), Style::kBold),
-                       Plain(At(p, "value")), Plain(At(p, "unit"))));
+  const std::string unit = Plain(At(p, "unit"));
+  out.Line(fmt::format("{} = {}{}{}", out.Paint(Plain(At(p, "name")), Style::kBold),
+                       Plain(At(p, "value")), unit.empty() ? "" : " ", unit));
   out.Line(fmt::format("  range   {}", Range(p)));
   out.Line(fmt::format("  meaning {}", Plain(At(p, "description"))));
   out.Line(fmt::format("  source  {}", Plain(At(p, "source"))));

@@ -49,6 +49,8 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const Json& noise = At(s, "noise");
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
+    if (At(s, "recording").is_string())
+      line("recording", Plain(At(s, "recording")) + "    (regrasp record stop)");
     const Json& incident = At(s, "incident");
     if (incident.is_object() && (state == "dropped" || state == "faulted"))
       line("incident", Plain(At(incident, "record")) + "    (regrasp plot incident)");

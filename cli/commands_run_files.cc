@@ -1,19 +1,13 @@
 // Run files: recording is the daemon's, the rest is done by regrasp-run.
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "cli/context.h"
+#include "cli/program.h"
 #include "cli/run_files.h"
-
-extern char** environ;
 
 namespace regrasp::cli {
 namespace {
@@ -76,19 +70,10 @@ std::string FindRun(Context& context, const std::string& name) {
                  "regrasp record list");
 }
 
-std::string FindProgram() {
-  std::error_code ignored;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& path : {bin / "regrasp-run", bin / REGRASP_LIBEXEC_FROM_BIN "/regrasp-run"})
-    if (::access(path.c_str(), X_OK) == 0) return path;
-  throw CliError(kNotFound, fmt::format("no regrasp-run beside {}", (bin / "regrasp").string()),
-                 "regrasp doctor");
-}
-
 ExitCode Run(Context& context, const Invocation& invocation,
              const std::vector<std::string>& defaults = {}) {
   const std::string file = FindRun(context, invocation.Text("run"));
-  std::vector<std::string> arguments = {FindProgram(), invocation.command->words, file};
+  std::vector<std::string> arguments = {FindHelper("regrasp-run"), invocation.command->words, file};
   arguments.insert(arguments.end(), defaults.begin(), defaults.end());
   for (const Arg& arg : invocation.command->args) {
     if (arg.key == "run" || !invocation.Has(arg.key)) continue;
@@ -97,21 +82,10 @@ ExitCode Run(Context& context, const Invocation& invocation,
   }
   if (context.out().format() == Format::kJson) arguments.push_back("--json");
   if (context.options().quiet) arguments.push_back("--quiet");
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  pid_t pid = 0;
-  const int error = ::posix_spawn(&pid, argv[0], nullptr, nullptr, argv.data(), environ);
-  if (error != 0)
-    throw CliError(kIo, fmt::format("cannot start {}: {}", arguments[0], std::strerror(error)),
-                   "regrasp doctor");
-  int status = 0;
-  while (::waitpid(pid, &status, 0) < 0)
-    if (errno != EINTR) throw CliError(kIo, "regrasp-run was lost", "try again");
-  if (!WIFEXITED(status))
-    throw CliError(kFailed, fmt::format("regrasp-run ended by signal {}", WTERMSIG(status)),
-                   "try again");
-  return static_cast<ExitCode>(WEXITSTATUS(status));
+  const int code = WaitForEnd(Start(arguments));
+  if (code > 128)
+    throw CliError(kFailed, fmt::format("regrasp-run ended by signal {}", code - 128), "try again");
+  return static_cast<ExitCode>(code);
 }
 
 ExitCode Replay(Context& context, const Invocation& invocation) {

@@ -9,8 +9,6 @@
 namespace regrasp::cli {
 namespace {
 
-constexpr double kPatience = 0.15;  // [s], for the daemon: the user is waiting with a finger on Tab
-
 std::vector<std::string> Spellings(const Arg& arg) {
   std::vector<std::string> names;
   for (std::size_t begin = 0; begin < arg.flags.size();) {
@@ -126,8 +124,8 @@ Candidates Complete(const std::vector<std::string>& words, const std::string& cu
   return std::move(collector.candidates);
 }
 
-AskNames AskDaemon(const std::string& socket) {
-  const auto deadline = Deadline(kPatience);
+AskNames AskDaemon(const std::string& socket, double patience_s) {
+  const auto deadline = Deadline(patience_s);
   return [=](const std::string& method, const std::string& param) {
     std::vector<std::string> names;
     const auto left = [&] {
@@ -150,8 +148,13 @@ std::string CompletionLines(const std::vector<std::string>& arguments) {
   if (arguments.empty()) return {};
   const std::vector<std::string> words(arguments.begin(), arguments.end() - 1);
   std::string socket;
-  for (std::size_t i = 0; i + 1 < words.size(); ++i)
-    if (words[i] == "-s" || words[i] == "--socket") socket = words[i + 1];
+  constexpr std::string_view kAssigned = "--socket=";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i].starts_with(kAssigned)) socket = words[i].substr(kAssigned.size());
+    if (words[i] != "-s" && words[i] != "--socket") continue;
+    if (i + 1 < words.size() && words[i + 1] == "=") ++i;  // bash takes --socket=PATH apart
+    if (i + 1 < words.size()) socket = words[i + 1];
+  }
   const std::string current = arguments.back() == "=" ? "" : arguments.back();
   const Candidates found = Complete(words, current, AskDaemon(socket));
   std::string text = found.files ? ":files\n" : "";

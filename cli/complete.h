@@ -27,9 +27,12 @@ using AskNames =
 Candidates Complete(const std::vector<std::string>& words, const std::string& current,
                     const AskNames& ask);
 
-/// Names from the daemon at `socket` ("": the usual place), within 150 ms from the call on; none
-/// when there is no answer by then.
-AskNames AskDaemon(const std::string& socket);
+/// How long completion waits for a daemon [s]: the user is waiting with a finger on Tab.
+inline constexpr double kTabPatience = 0.15;
+
+/// Names from the daemon at `socket` ("": the usual place), within `patience_s` from the call on;
+/// none when there is no answer by then.
+AskNames AskDaemon(const std::string& socket, double patience_s = kTabPatience);
 
 /// `regrasp __complete WORD… CURRENT`, for the scripts of CompletionScript(): a line
 /// "WORD\tMEANING" each; the line ":files" when a file may stand there.

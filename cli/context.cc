@@ -13,15 +13,6 @@
 namespace regrasp::cli {
 namespace {
 
-bool WantsColor(const GlobalOptions& options) {
-  if (options.json || options.csv || options.color == ColorMode::kNever) return false;
-  if (options.color == ColorMode::kAlways) return true;
-  const char* no_color = std::getenv("NO_COLOR");
-  const char* term = std::getenv("TERM");
-  if (no_color != nullptr && *no_color != '\0') return false;
-  return ::isatty(STDOUT_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
-}
-
 bool HasUtf8() {
   std::setlocale(LC_CTYPE, "");
   return std::strcmp(::nl_langinfo(CODESET), "UTF-8") == 0;
@@ -45,6 +36,14 @@ void CheckProtocol(Client& client) {
 
 }  // namespace
 
+bool WantsColor(ColorMode mode, int fd) {
+  if (mode != ColorMode::kAuto) return mode == ColorMode::kAlways;
+  const char* no_color = std::getenv("NO_COLOR");
+  const char* term = std::getenv("TERM");
+  if (no_color != nullptr && *no_color != '\0') return false;
+  return ::isatty(fd) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
+}
+
 SocketPath ConnectPath(const std::string& flag) {
   const char* named = std::getenv("REGRASP_SOCKET");
   const bool decided = !flag.empty() || (named != nullptr && *named != '\0');
@@ -65,7 +64,10 @@ std::string ClientSocket(const std::string& flag) {
 }
 
 Context::Context(const GlobalOptions& options)
-    : options_(options), out_(FormatOf(options), WantsColor(options), HasUtf8()) {}
+    : options_(options),
+      out_(FormatOf(options),
+           FormatOf(options) == Format::kHuman && WantsColor(options.color, STDOUT_FILENO),
+           HasUtf8()) {}
 
 Client& Context::client() {
   if (!client_) {

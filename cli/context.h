@@ -22,6 +22,8 @@ class Context {
 
   /// The connection; made at the first call. Throws CliError(kNoDaemon, kPermission, kTimeout).
   Client& client();
+  /// Gives the connection up: the next call makes another.
+  void Disconnect() { client_.reset(); }
   /// Calls the method of `invocation` with its parameters.
   Json Call(const Invocation& invocation) {
     return client().Call(std::string(invocation.command->method->name), invocation.params);
@@ -55,6 +57,9 @@ class Context {
   std::unique_ptr<Client> client_;
 };
 
+/// Whether what is written to the descriptor is coloured: --color, else NO_COLOR, else a terminal
+/// that can.
+bool WantsColor(ColorMode mode, int fd);
 /// Where a client looks for the daemon, by the rule of core/protocol/socket_path.h.
 SocketPath ConnectPath(const std::string& flag);
 /// The socket a client connects to, by the rule of core/protocol/socket_path.h. Throws

@@ -35,6 +35,25 @@ Check CheckProgram(const std::string& daemon) {
           false};
 }
 
+/// The programs that replay, film and draw. Without arguments each says how it is used.
+Check CheckHelpers() {
+  std::string found;
+  for (const char* name : {"regrasp-run", "regrasp-plot-experiment"}) {
+    try {
+      const std::string path = FindHelper(name);
+      const Finished finished = RunProgram({path});
+      if (finished.code != static_cast<int>(kUsage))
+        return {"helpers", FirstLine(finished),
+                "./check installs the packages it needs (packages.txt)", false};
+    } catch (const CliError& error) {
+      if (error.code == kInterrupted) throw;
+      return {"helpers", error.what(), "build everything, or install the package", false};
+    }
+    found += (found.empty() ? "" : ", ") + std::string(name);
+  }
+  return {"helpers", found, ""};
+}
+
 Check CheckFont() {
   for (const char* place : {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu"})
     if (fs::exists(fs::path(place) / "DejaVuSans.ttf")) return {"font", place, ""};
@@ -157,8 +176,8 @@ ExitCode Doctor(Context& context, const Invocation&) {
   std::vector<Check> checks;
   try {
     const std::string daemon = FindDaemon();
-    checks = {CheckProgram(daemon), CheckFont(), CheckConfiguration(daemon), CheckOutput(daemon),
-              CheckPhysics()};
+    checks = {CheckProgram(daemon),       CheckHelpers(),      CheckFont(),
+              CheckConfiguration(daemon), CheckOutput(daemon), CheckPhysics()};
   } catch (const CliError& error) {
     checks = {{"program", error.what(), "build it, or install the package", false}};
   }

@@ -2,27 +2,37 @@
 
 #include <unistd.h>
 
-#include <cstdlib>
-
 #include "cli/context.h"
 
 namespace regrasp::cli {
+namespace {
+
+/// The daemon's refusals are for any client: where its hint is no command, it belongs to the cause,
+/// and the next command is found here.
+CliError ForPeople(const CliError& error, const std::string& words) {
+  if (error.rpc_code == 0 || error.hint.starts_with("regrasp")) return error;
+  const std::string next = words.starts_with("job ")     ? "regrasp job list"
+                           : words.starts_with("param ") ? "regrasp param list"
+                                                         : "regrasp help " + words;
+  const std::string cause = error.what();
+  return {error.code, error.hint.empty() ? cause : cause + "; " + error.hint, next, error.rpc_code};
+}
+
+}  // namespace
 
 ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& defaults,
                  const std::string& where) {
-  const char* no_color = std::getenv("NO_COLOR");
-  const bool color = ::isatty(STDERR_FILENO) == 1 && (no_color == nullptr || *no_color == '\0') &&
-                     defaults.color != ColorMode::kNever;
+  GlobalOptions options = defaults;
   std::vector<const char*> argv = {"regrasp"};
   for (const auto& word : words) argv.push_back(word.c_str());
   const int argc = static_cast<int>(argv.size());
   const auto fail = [&](const CliError& error) {
     const CliError placed(error.code, where + error.what(), error.hint, error.rpc_code);
-    PrintError(placed, defaults.json || WantsJson(argc, argv.data()), color);
+    PrintError(placed, defaults.json || WantsJson(argc, argv.data()),
+               WantsColor(options.color, STDERR_FILENO));
     return error.code;
   };
   try {
-    GlobalOptions options = defaults;
     const Invocation invocation = Parse(argc, argv.data(), &options);
     Context context(options);
     ExitCode code = kOk;
@@ -33,7 +43,7 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
       if (error.code == kUsage && error.hint.empty()) {
         error.hint = "regrasp help " + invocation.command->words;
       }
-      throw;
+      throw ForPeople(error, invocation.command->words);
     }
     context.out().Flush();
     return code;

@@ -131,24 +131,27 @@ Json WaitForJob(Context& context, std::int64_t id) {
                     ::isatty(STDERR_FILENO) == 1);
   const auto deadline = Deadline(context.options().timeout_s.value_or(0));
   const std::string how = fmt::format("regrasp job wait {}", id);
-  while (true) {
-    const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
-    const double slice = std::clamp(left, 0.0, line.on() ? 0.1 : 60.0);
-    try {
-      return context.client().Call("job.wait", {{"id", id}, {"timeout_s", slice}}, slice + 10);
-    } catch (const CliError& error) {
-      if (error.code == kInterrupted) {
-        throw CliError(kInterrupted, fmt::format("interrupted; job {} goes on", id), how);
+  try {
+    while (true) {
+      const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
+      const double slice = std::clamp(left, 0.0, line.on() ? 0.1 : 60.0);
+      try {
+        return context.client().Call("job.wait", {{"id", id}, {"timeout_s", slice}}, slice + 10);
+      } catch (const CliError& error) {
+        if (error.code != kTimeout || error.rpc_code == 0) throw;
+        if (Clock::now() >= deadline) {
+          throw CliError(kTimeout,
+                         fmt::format("job {} has not ended after {:g} s; it goes on", id,
+                                     *context.options().timeout_s),
+                         how);
+        }
       }
-      if (error.code != kTimeout || error.rpc_code == 0) throw;
-      if (Clock::now() >= deadline) {
-        throw CliError(kTimeout,
-                       fmt::format("job {} has not ended after {:g} s; it goes on", id,
-                                   *context.options().timeout_s),
-                       how);
-      }
+      if (line.on())
+        line.Show(ProgressText(context, context.client().Call("job.get", {{"id", id}})));
     }
-    if (line.on()) line.Show(ProgressText(context, context.client().Call("job.get", {{"id", id}})));
+  } catch (const CliError& error) {
+    if (error.code != kInterrupted) throw;
+    throw CliError(kInterrupted, fmt::format("interrupted; job {} goes on", id), how);
   }
 }
 

@@ -3,9 +3,11 @@
 
 #include "cli/complete.h"
 #include "cli/execute.h"
+#include "core/protocol/standard_files.h"
 
 int main(int argc, char** argv) {
   using namespace regrasp::cli;
+  regrasp::OccupyStandardFiles();
   if (argc > 1 && std::string_view(argv[1]) == "__complete") {
     try {
       std::fputs(CompletionLines({argv + 2, argv + argc}).c_str(), stdout);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -18,8 +19,8 @@
 namespace regrasp::cli {
 namespace {
 
-/// How long the prompt waits for a daemon [s].
-constexpr double kPatience = 0.15;
+/// How long the prompt waits for a daemon that does not answer, unless --timeout says so [s].
+constexpr double kPromptPatience = 1.0;
 
 /// A line's words, without the `regrasp` that a line copied from elsewhere begins with.
 std::vector<std::string> CommandWords(const std::string& line) {
@@ -28,14 +29,6 @@ std::vector<std::string> CommandWords(const std::string& line) {
   if (!words.empty() && words.front() == "shell")
     throw CliError(kUsage, "this is the shell already", "help");
   return words;
-}
-
-Json Ask(const GlobalOptions& options, const char* method, const Json& params) {
-  try {
-    return Client(ClientSocket(options.socket), kPatience).Call(method, params);
-  } catch (const CliError&) {
-    return nullptr;
-  }
 }
 
 /// Files and folders that begin with `last`; folders end with '/'.
@@ -55,20 +48,51 @@ std::vector<std::string> Files(const std::string& last) {
   return names;
 }
 
+/// A signal that ends the shell came while something was waited for.
+bool MustEnd() { return SignalReceived() != 0 && SignalReceived() != SIGINT; }
+
 std::string Prompt(const GlobalOptions& options) {
-  const Json status = Ask(options, "status", Json::object());
-  if (status.is_null()) return "regrasp (no daemon)> ";
-  return fmt::format("regrasp {}{}> ", Plain(At(status, "state")),
-                     At(status, "paused") == true ? " (paused)" : "");
+  const Interruptible interruptible;
+  try {
+    const double patience = options.timeout_s.value_or(kPromptPatience);
+    const Json status =
+        Client(ClientSocket(options.socket), patience).Call("status", Json::object());
+    return fmt::format("regrasp {}{}> ", Plain(At(status, "state")),
+                       At(status, "paused") == true ? " (paused)" : "");
+  } catch (const CliError& error) {
+    if (MustEnd()) throw;
+    const bool waited = error.code == kTimeout || error.code == kInterrupted;
+    return waited ? "regrasp (no answer)> " : "regrasp (no daemon)> ";
+  }
 }
 
+/// While it lives, Ctrl-C ends commands and drops lines, never the shell. A handler, for what is
+/// ignored here would be ignored by the programs it starts too.
+class KeepOnInterrupt {
+ public:
+  KeepOnInterrupt() {
+    struct sigaction nothing = {};
+    nothing.sa_handler = [](int) {};
+    ::sigaction(SIGINT, &nothing, &before_);
+  }
+  ~KeepOnInterrupt() { ::sigaction(SIGINT, &before_, nullptr); }
+  KeepOnInterrupt(const KeepOnInterrupt&) = delete;
+  KeepOnInterrupt& operator=(const KeepOnInterrupt&) = delete;
+
+ private:
+  struct sigaction before_ = {};
+};
+
 ExitCode Converse(Context& context) {
+  const KeepOnInterrupt keep;
   const GlobalOptions& options = context.options();
   const auto complete = [&options](const std::string& line) {
     TypedWords typed = SplitTyped(line);
     if (!typed.words.empty() && typed.words.front() == "regrasp")
       typed.words.erase(typed.words.begin());
-    const Candidates found = Complete(typed.words, typed.last, AskDaemon(options.socket));
+    const Candidates found =
+        Complete(typed.words, typed.last,
+                 AskDaemon(options.socket, options.timeout_s.value_or(kTabPatience)));
     std::vector<std::string> words;
     if (found.files) words = Files(typed.last);
     for (const Candidate& candidate : found.words) words.push_back(candidate.word);
@@ -92,9 +116,11 @@ ExitCode Converse(Context& context) {
       const auto words = CommandWords(line);
       if (words.empty()) continue;
       if (words.size() == 1 && (words[0] == "exit" || words[0] == "quit")) return kOk;
+      const Interruptible interruptible;
       Execute(words, options);
+      if (MustEnd()) return kInterrupted;
     } catch (const CliError& error) {
-      PrintError(error, options.json, false);
+      PrintError(error, options.json, WantsColor(options.color, STDERR_FILENO));
     }
   }
 }
@@ -112,7 +138,8 @@ ExitCode RunScript(Context& context, std::istream& in, const std::string& name, 
       if (words.size() == 1 && (words[0] == "exit" || words[0] == "quit")) return first;
       code = Execute(words, context.options(), where);
     } catch (const CliError& error) {
-      PrintError({error.code, where + error.what(), error.hint}, context.options().json, false);
+      PrintError({error.code, where + error.what(), error.hint}, context.options().json,
+                 WantsColor(context.options().color, STDERR_FILENO));
       code = error.code;
     }
     if (code == kOk) continue;
@@ -125,7 +152,7 @@ ExitCode RunScript(Context& context, std::istream& in, const std::string& name, 
                     fmt::format("{}stopped: '{}' ended with exit code {}", where, line,
                                 static_cast<int>(code)),
                     "regrasp shell --keep-going, to run the rest all the same"},
-                   context.options().json, false);
+                   context.options().json, WantsColor(context.options().color, STDERR_FILENO));
       }
       return first;
     }

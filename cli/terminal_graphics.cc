@@ -19,7 +19,8 @@
 namespace regrasp::cli {
 namespace {
 
-constexpr double kPatience = 1.0;  // for the terminal's answer, perhaps over a slow line [s]
+// For the terminal's answer, perhaps over a slow line, unless --timeout says so [s].
+constexpr double kPatience = 1.0;
 
 std::string Variable(const char* name) {
   const char* value = std::getenv(name);
@@ -44,7 +45,7 @@ class RawInput {
   termios before_ = {};
 };
 
-TerminalAnswer AskTerminal() {
+TerminalAnswer AskTerminal(double patience_s) {
   const std::string term = Variable("TERM");
   if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDOUT_FILENO) != 1) return {};
   if (term.empty() || term == "dumb" || term == "linux") return {};  // would print the question
@@ -53,7 +54,7 @@ TerminalAnswer AskTerminal() {
   constexpr std::string_view kQuestion = "\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\\x1b[16t\x1b[c";
   if (::write(STDOUT_FILENO, kQuestion.data(), kQuestion.size()) < 0) return {};
   std::string text;
-  const auto deadline = Deadline(kPatience);
+  const auto deadline = Deadline(patience_s);
   while (!ReadAnswer(text).complete && WaitFor(STDIN_FILENO, POLLIN, deadline)) {
     char chunk[256];
     const ssize_t n = ::read(STDIN_FILENO, chunk, sizeof chunk);
@@ -109,7 +110,8 @@ std::string DrawPicture(Context& context, const std::string& file) {
   }
   const Image image = DecodePng(png, file);
   const bool asked = Variable("REGRASP_GRAPHICS").empty() || Variable("REGRASP_GRAPHICS") == "auto";
-  const TerminalAnswer answer = asked ? AskTerminal() : TerminalAnswer{};
+  const TerminalAnswer answer =
+      asked ? AskTerminal(context.options().timeout_s.value_or(kPatience)) : TerminalAnswer{};
   winsize window = {};
   ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &window);
   const int columns = window.ws_col > 0 ? window.ws_col : 80;

@@ -17,18 +17,8 @@ constexpr double kMessageSeconds = 6;  // how long an answer stays in the last r
 /// One session of the dashboard.
 class Dashboard {
  public:
-  explicit Dashboard(Context& context) : context_(context), client_(context.client()) {
-    // Before the terminal is taken over: an absent daemon is an ordinary error.
-    const Json past = client_.Call("events", {{"count", 50}});
-    for (const Json& event : At(past, "events")) model_.Add("events", event);
-    for (const char* topic : {"status", "contacts", "quality"})
-      model_.Add(topic, client_.Call(topic, Json::object()));
-    for (const char* topic : {"status", "contacts", "quality", "events"}) {
-      Json params = {{"topic", topic}};
-      if (std::string_view(topic) != "events") params["rate_hz"] = kRate;
-      client_.Call("subscribe", params);
-    }
-  }
+  /// Before the terminal is taken over: an absent daemon is an ordinary error.
+  explicit Dashboard(Context& context) : context_(context) { Connect(); }
 
   ExitCode Run() {
     FullScreen terminal(context_.out().color());
@@ -40,9 +30,9 @@ class Dashboard {
         Draw(&terminal);
         next = std::max(next + period, Clock::now());
       }
-      pollfd fds[] = {{STDIN_FILENO, POLLIN, 0}, {client_.fd(), POLLIN, 0}};
+      pollfd fds[] = {{STDIN_FILENO, POLLIN, 0}, {context_.client().fd(), POLLIN, 0}};
       WaitForAny(fds, next);
-      if (fds[1].revents != 0) TakeMessages();
+      if (fds[1].revents != 0) Listen();
       if ((fds[0].revents & (POLLHUP | POLLERR)) != 0) return kInterrupted;  // the terminal is gone
       bool pressed = false;
       while (const int key = terminal.Key()) {
@@ -69,12 +59,45 @@ class Dashboard {
     message_until_ = {};
     const auto request = keys_.Press(key, model_);
     if (!request) return;
-    asked_[client_.Post(request->method, request->params)] = request->method;
+    asked_[context_.client().Post(request->method, request->params)] = request->method;
     Say(request->method + " …", Ink::kDim);
   }
 
+  void Connect() {
+    Client& client = context_.client();
+    model_ = {};
+    asked_.clear();
+    const Json past = client.Call("events", {{"count", 50}});
+    for (const Json& event : At(past, "events")) model_.Add("events", event);
+    for (const char* topic : {"status", "contacts", "quality"})
+      model_.Add(topic, client.Call(topic, Json::object()));
+    for (const char* topic : {"status", "contacts", "quality", "events"}) {
+      Json params = {{"topic", topic}};
+      if (std::string_view(topic) != "events") params["rate_hz"] = kRate;
+      client.Call("subscribe", params);
+    }
+  }
+
+  /// Messages; a connection that was lost is made again, once: a daemon ends that of a client which
+  /// does not read, as this one while the user has it stopped with Ctrl-Z.
+  void Listen() {
+    try {
+      TakeMessages();
+    } catch (const CliError& lost) {
+      if (lost.code != kNoDaemon) throw;
+      context_.Disconnect();
+      try {
+        Connect();
+      } catch (const CliError& error) {
+        if (error.code != kNoDaemon) throw;
+        throw lost;
+      }
+      Say("the daemon had closed the connection: connected again", Ink::kWarn);
+    }
+  }
+
   void TakeMessages() {
-    while (auto message = client_.Receive(0)) {
+    while (auto message = context_.client().Receive(0)) {
       if (message->id == 0) {
         model_.Add(message->body.value("topic", ""), message->body);
       } else if (const auto it = asked_.find(message->id); it != asked_.end()) {
@@ -114,7 +137,6 @@ class Dashboard {
   }
 
   Context& context_;
-  Client& client_;
   DashboardModel model_;
   Keys keys_;
   std::map<long, std::string> asked_;  ///< requests under way: id and method

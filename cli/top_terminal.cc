@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -57,7 +58,8 @@ Look LookOf(Ink ink) {
 struct FullScreen::State {
   FILE* out = nullptr;  ///< the terminal, on a file descriptor of our own
   SCREEN* screen = nullptr;
-  int memory = -1;  ///< takes what ncurses writes while it draws
+  WINDOW* keys = nullptr;  ///< keys are read through it: a pad, which reading does not draw
+  int memory = -1;         ///< takes what ncurses writes while it draws
   bool color = false;
 };
 
@@ -79,8 +81,9 @@ FullScreen::FullScreen(bool color) : state_(nullptr) {
   ::cbreak();
   ::noecho();
   ::nonl();
-  ::keypad(stdscr, TRUE);
-  ::nodelay(stdscr, TRUE);
+  state_->keys = ::newpad(1, 1);
+  ::keypad(state_->keys, TRUE);
+  ::nodelay(state_->keys, TRUE);
   ::typeahead(-1);  // a picture is never left half drawn because a key came
   ::set_escdelay(25);
   ::curs_set(0);
@@ -125,11 +128,16 @@ void FullScreen::Show(const Screen& screen) {
   }
   ::wnoutrefresh(stdscr);
   // ncurses writes a picture in pieces, which a terminal may show one by one. They are collected
-  // and written at once.
+  // and written at once. Ctrl-Z waits until the terminal itself is written to again.
+  sigset_t stop, before;
+  sigemptyset(&stop);
+  sigaddset(&stop, SIGTSTP);
+  sigprocmask(SIG_BLOCK, &stop, &before);
   const int fd = ::fileno(state_->out);
   ::dup2(state_->memory, fd);
   ::doupdate();
   ::dup2(STDOUT_FILENO, fd);
+  sigprocmask(SIG_SETMASK, &before, nullptr);
   std::string frame(static_cast<std::size_t>(::lseek(state_->memory, 0, SEEK_CUR)), '\0');
   const ssize_t size = ::pread(state_->memory, frame.data(), frame.size(), 0);
   ::lseek(state_->memory, 0, SEEK_SET);
@@ -144,7 +152,7 @@ void FullScreen::Show(const Screen& screen) {
 
 int FullScreen::Key() {
   while (true) {
-    const int key = ::wgetch(stdscr);
+    const int key = ::wgetch(state_->keys);
     if (key == ERR) return 0;
     // A new size of the window, or several that ended where they began, of which ncurses would see
     // no change: what the terminal still shows is unknown, so the next picture is drawn whole.

@@ -11,13 +11,13 @@
 namespace regrasp::cli {
 namespace {
 
-std::atomic<bool> g_interrupted = false;  // lock-free: set by the handler, read by every thread
+std::atomic<int> g_signal = 0;  // lock-free: set by the handler, read by every thread
 int g_depth = 0;
 constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 sigset_t g_mask_before;
 struct sigaction g_before[std::size(kSignals)];
 
-void OnSignal(int) { g_interrupted = true; }
+void OnSignal(int number) { g_signal = number; }
 
 }  // namespace
 
@@ -42,14 +42,16 @@ Interruptible::Interruptible() {
 
 Interruptible::~Interruptible() {
   if (--g_depth > 0) return;
-  g_interrupted = 0;  // what ended this wait ends no later one
+  g_signal = 0;  // what ended this wait ends no later one
   for (std::size_t i = 0; i < std::size(kSignals); ++i)
     sigaction(kSignals[i], &g_before[i], nullptr);
   sigprocmask(SIG_SETMASK, &g_mask_before, nullptr);
 }
 
+int SignalReceived() { return g_signal; }
+
 void CheckInterrupt() {
-  if (g_interrupted) throw CliError(kInterrupted, "interrupted");
+  if (g_signal != 0) throw CliError(kInterrupted, "interrupted");
 }
 
 namespace {

@@ -32,6 +32,8 @@ bool WaitFor(int fd, short events, Clock::time_point deadline);
 /// signal with another handler came (a new window size). Throws CliError(kInterrupted).
 void WaitForAny(std::span<pollfd> fds, Clock::time_point deadline);
 
+/// The signal that came since the outermost living Interruptible was made, 0 when none did.
+int SignalReceived();
 /// Throws CliError(kInterrupted) if a signal came since the outermost living Interruptible was
 /// made.
 void CheckInterrupt();

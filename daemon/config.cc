@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 
 #include "core/common/nearest_name.h"
 #include "core/protocol/config_path.h"
@@ -17,6 +18,13 @@ namespace {
 std::string DidYouMean(std::string_view wanted, const std::vector<std::string_view>& names) {
   const std::string_view near = NearestName(wanted, names);
   return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+/// A value as TOML writes it.
+std::string Written(const toml::node& node) {
+  std::ostringstream text;
+  node.visit([&text](const auto& value) { text << value; });
+  return text.str();
 }
 
 struct Reader {
@@ -44,7 +52,7 @@ struct Reader {
     const auto read = [&](const toml::node& item, int i) {
       const auto number = item.is_number() ? item.value<double>() : std::nullopt;
       if (!number || !(*number >= info.min && *number <= info.max))
-        Fail(node, fmt::format("{}: expected {}{}", name,
+        Fail(node, fmt::format("{} = {}: expected {}{}", name, Written(node),
                                info.size == 1 ? "a number, " : "3 numbers, each ", allowed));
       value[i] = *number;
     };
@@ -53,7 +61,8 @@ struct Reader {
     } else {
       const toml::array* items = node.as_array();
       if (!items || items->size() != 3)
-        Fail(node, fmt::format("{}: expected 3 numbers, each {}", name, allowed));
+        Fail(node,
+             fmt::format("{} = {}: expected 3 numbers, each {}", name, Written(node), allowed));
       for (int i = 0; i < 3; ++i) read((*items)[static_cast<std::size_t>(i)], i);
     }
     config->parameters.emplace_back(name, value);
@@ -73,7 +82,7 @@ struct Reader {
 
   void ReadKey(const ConfigKey& key, const toml::node& node) const {
     const auto wrong = [&](const char* expected) {
-      Fail(node, fmt::format("{}: expected {}", key.name, expected));
+      Fail(node, fmt::format("{} = {}: expected {}", key.name, Written(node), expected));
     };
     std::string text;
     if (key.kind == KeyKind::kInteger) {

@@ -7,12 +7,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "core/common/nearest_name.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
+#include "core/protocol/standard_files.h"
 #include "daemon/bench.h"
 #include "daemon/config.h"
 #include "daemon/daemon.h"
@@ -59,6 +62,14 @@ int Fail(const std::string& cause, const std::string& next, ExitCode code) {
   return static_cast<int>(code);
 }
 
+/// Puts the answer on standard output, to its last byte.
+int Print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    return Fail(fmt::format("cannot write to standard output: {}", std::strerror(errno)),
+                "df -h .    (is the disk full?)", ExitCode::kIo);
+  return static_cast<int>(ExitCode::kOk);
+}
+
 /// Values from the command line.
 struct Flags {
   std::string config;
@@ -77,7 +88,8 @@ Examples:
   regraspd --print-default-config > hand.toml  every key with its built-in value
   regraspd --config hand.toml --check-config   is the file right?
 
-A flag beats the environment ($REGRASP_SEED for --seed), which beats the file.)";
+A flag beats the environment ($REGRASP_SEED for --seed), which beats the file.
+)";
 
 void AddFlags(CLI::App& app, Flags& f) {
   app.add_option("--config", f.config,
@@ -152,27 +164,27 @@ int Main(int argc, char** argv) {
   AddFlags(app, flags);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& e) {
-    return app.exit(e);
+  } catch (const CLI::CallForHelp&) {
+    return Print(app.help());
   } catch (const CLI::ExtrasError& e) {
     return Fail(Unexpected(app), "regraspd --help", ExitCode::kUsage);
   } catch (const CLI::ParseError& e) {
     return Fail(e.what(), "regraspd --help", ExitCode::kUsage);
   }
-  if (flags.version) return fmt::print("regraspd {} (protocol {})\n", Version(), kWireVersion), 0;
-  if (flags.print_default) return fmt::print("{}", DefaultConfigText()), 0;
-  if (flags.print_manual) return fmt::print("{}", DaemonManual()), 0;
-  if (flags.print_protocol_manual) return fmt::print("{}", ProtocolManual()), 0;
-  if (flags.print_protocol) return fmt::print("{}", ProtocolPage()), 0;
   try {
+    if (flags.version)
+      return Print(fmt::format("regraspd {} (protocol {})\n", Version(), kWireVersion));
+    if (flags.print_default) return Print(DefaultConfigText());
+    if (flags.print_manual) return Print(DaemonManual());
+    if (flags.print_protocol_manual) return Print(ProtocolManual());
+    if (flags.print_protocol) return Print(ProtocolPage());
     const auto source = [given = Given(app, flags)] { return ResolveConfig(given); };
     const DaemonConfig config = source();
-    if (flags.print_config) return fmt::print("{}\n", ConfigJson(config)), 0;
-    if (flags.bench_s > 0) return fmt::print("{}\n", Benchmark(config, flags.bench_s)), 0;
+    if (flags.print_config) return Print(ConfigJson(config) + "\n");
+    if (flags.bench_s > 0) return Print(Benchmark(config, flags.bench_s) + "\n");
     if (!flags.check) return Serve(config, source);
     CheckModels(config);
-    fmt::print("configuration ok\n");
-    return 0;
+    return Print("configuration ok\n");
   } catch (const ConfigError& e) {
     return Fail(e.what(), "regraspd --print-default-config", ExitCode::kUsage);
   } catch (const ModelError& e) {
@@ -188,4 +200,7 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace regrasp
 
-int main(int argc, char** argv) { return regrasp::Main(argc, argv); }
+int main(int argc, char** argv) {
+  regrasp::OccupyStandardFiles();
+  return regrasp::Main(argc, argv);
+}

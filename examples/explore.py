@@ -34,10 +34,18 @@ class Regrasp:
         return self.call("job.wait", id=self.call(method, **params)["job"])
 
 
+def find_socket():
+    """The path that was named, or the first that is there of the places where `regrasp up` puts it."""
+    named = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("REGRASP_SOCKET")
+    if named:
+        return named
+    folders = [os.environ.get("XDG_RUNTIME_DIR", "/run") + "/regrasp", "/run/regrasp", f"/tmp/regrasp-{os.getuid()}"]
+    paths = [folder + "/regrasp.sock" for folder in folders]
+    return next(filter(os.path.exists, paths), paths[0])
+
+
 def main():
-    usual = os.environ.get("XDG_RUNTIME_DIR", "/run") + "/regrasp/regrasp.sock"
-    path = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("REGRASP_SOCKET", usual)
-    hand = Regrasp(path)
+    hand = Regrasp(find_socket())
     if hand.call("status")["state"] == "idle":
         hand.finish("grasp")
     for finger in hand.call("quality")["fingers"]:

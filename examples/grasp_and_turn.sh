@@ -2,7 +2,13 @@
 # Grasps the object and turns it by 90 degrees, with nothing but a shell and nc (netcat-openbsd).
 #   regrasp up && sh grasp_and_turn.sh [SOCKET]
 set -eu
-socket=${1:-${REGRASP_SOCKET:-$XDG_RUNTIME_DIR/regrasp/regrasp.sock}}
+socket=${1:-${REGRASP_SOCKET:-}}
+if [ -z "$socket" ]; then # the first that is there of the places where `regrasp up` puts it
+  for folder in "${XDG_RUNTIME_DIR:-/run}/regrasp" /run/regrasp "/tmp/regrasp-$(id -u)"; do
+    socket=$folder/regrasp.sock
+    if [ -S "$socket" ]; then break; fi
+  done
+fi
 
 # ask METHOD [PARAMS]: one request, one line of answer. nc ends when the daemon has answered (-N).
 ask() {

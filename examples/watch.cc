@@ -49,6 +49,18 @@ class Connection {
   std::string buffer_;
 };
 
+/// $REGRASP_SOCKET, or the first that is there of the places where `regrasp up` puts it.
+std::string FindSocket() {
+  if (const char* named = std::getenv("REGRASP_SOCKET")) return named;
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  for (const std::string& folder : {std::string(runtime ? runtime : "/run") + "/regrasp",
+                                    "/tmp/regrasp-" + std::to_string(::getuid())}) {
+    const std::string path = folder + "/regrasp.sock";
+    if (::access(path.c_str(), F_OK) == 0) return path;
+  }
+  return "/run/regrasp/regrasp.sock";
+}
+
 /// The number after the first `key` from `at` on; `at` moves behind it. A real program would use a
 /// JSON library.
 double Number(const std::string& line, const std::string& key, std::size_t* at) {
@@ -61,8 +73,7 @@ double Number(const std::string& line, const std::string& key, std::size_t* at) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const char* named = std::getenv("REGRASP_SOCKET");
-  const std::string path = argc > 1 ? argv[1] : named ? named : "/run/regrasp/regrasp.sock";
+  const std::string path = argc > 1 ? argv[1] : FindSocket();
   const int count = argc > 2 ? std::atoi(argv[2]) : 10;
   try {
     Connection connection(path);

@@ -1,16 +1,12 @@
 #include "cli/experiment/summary.h"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 
 #include "cli/errors.h"
 #include "cli/experiment/statistics.h"
-
-extern char** environ;
+#include "cli/program.h"
 
 namespace regrasp::cli {
 namespace {
@@ -92,29 +88,11 @@ std::vector<const Json*> RowsWhere(const Trials& trials, const Json& wanted) {
   return rows;
 }
 
-/// The program that draws: it links OpenCV, this one does not. Beside this program, or installed in
-/// libexec.
-std::string FindPlotter() {
-  std::error_code ignored;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const fs::path& path :
-       {bin / "regrasp-plot-experiment", bin / REGRASP_LIBEXEC_FROM_BIN "/regrasp-plot-experiment"})
-    if (::access(path.c_str(), X_OK) == 0) return path;
-  throw CliError(kNotFound,
-                 fmt::format("no regrasp-plot-experiment beside {}: results without picture",
-                             (bin / "regrasp").string()),
-                 "regrasp doctor");
-}
-
 void Draw(const fs::path& summary, const fs::path& picture) {
-  const std::string program = FindPlotter();
-  std::string name = program, in = summary, out = picture;
-  char* argv[] = {name.data(), in.data(), out.data(), nullptr};
-  pid_t pid = 0;
-  int status = 0;
-  if (::posix_spawn(&pid, program.c_str(), nullptr, nullptr, argv, environ) != 0 ||
-      ::waitpid(pid, &status, 0) != pid || status != 0)
-    throw CliError(kIo, fmt::format("{} could not draw {}", program, picture.string()),
+  const std::string program = FindHelper("regrasp-plot-experiment");
+  const std::string in = summary, out = picture;
+  if (WaitForEnd(Start({program, in, out})) != 0)
+    throw CliError(kIo, fmt::format("{} could not draw {}", program, out),
                    fmt::format("{} {} {}", program, in, out));
 }
 

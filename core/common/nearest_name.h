@@ -28,20 +28,25 @@ inline std::size_t EditDistance(std::string_view a, std::string_view b) {
 }
 
 /// The name of `names` (any range of things convertible to std::string_view) nearest to `wanted`;
-/// the first of equals. Empty when `names` is empty, or when nothing is near: more than half of the
-/// longer word differs. `wanted` over 256 bytes is near to nothing.
+/// of equals the one that begins more like it, then the first. Empty when `names` is empty, or when
+/// nothing is near: more than half of the longer word differs. `wanted` over 256 bytes is near to
+/// nothing.
 template <typename Names>
 std::string_view NearestName(std::string_view wanted, const Names& names) {
   if (wanted.size() > 256) return {};
   std::string_view best;
-  std::size_t best_distance = 0;
+  std::size_t best_distance = 0, best_same = 0;
   for (const auto& candidate : names) {
     const std::string_view name = candidate;
     const std::size_t distance = EditDistance(wanted, name);
     if (2 * distance > std::max(wanted.size(), name.size())) continue;
-    if (best.empty() || distance < best_distance) {
+    const auto differ = std::mismatch(wanted.begin(), wanted.end(), name.begin(), name.end());
+    const auto same = static_cast<std::size_t>(differ.first - wanted.begin());
+    if (best.empty() || distance < best_distance ||
+        (distance == best_distance && same > best_same)) {
       best = name;
       best_distance = distance;
+      best_same = same;
     }
   }
   return best;

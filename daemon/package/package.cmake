@@ -15,6 +15,15 @@ foreach(page regrasp.1 regraspd.8 regrasp-protocol.7)
   install(FILES ${made} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section})
 endforeach()
 
+# The changelog where Debian looks for it.
+set(changelog ${CMAKE_BINARY_DIR}/man/changelog.gz)
+add_custom_command(
+  OUTPUT ${changelog}
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/man
+  COMMAND gzip -9n < ${PROJECT_SOURCE_DIR}/CHANGELOG.md > ${changelog}
+  DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md VERBATIM)
+install(FILES ${changelog} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/regrasp)
+
 # Completion, in the places where the shells of Debian look.
 set(completions)
 foreach(place bash:bash-completion/completions/regrasp zsh:zsh/vendor-completions/_regrasp
@@ -31,7 +40,7 @@ foreach(place bash:bash-completion/completions/regrasp zsh:zsh/vendor-completion
   list(APPEND completions ${made})
   install(FILES ${made} DESTINATION ${CMAKE_INSTALL_DATADIR}/${directory})
 endforeach()
-add_custom_target(regrasp_extras ALL DEPENDS ${pages} ${completions})
+add_custom_target(regrasp_extras ALL DEPENDS ${pages} ${changelog} ${completions})
 
 # The unit names the daemon where it is installed, which is known only then.
 install(CODE "
@@ -40,7 +49,7 @@ install(CODE "
                  \"${CMAKE_BINARY_DIR}/regraspd.service\" @ONLY)")
 install(FILES ${CMAKE_BINARY_DIR}/regraspd.service ${CMAKE_CURRENT_LIST_DIR}/regraspd.socket
         DESTINATION lib/systemd/system)
-install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright README.md CHANGELOG.md
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright README.md
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/regrasp)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/regrasp)
 
@@ -50,9 +59,10 @@ set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_PACKAGE_CONTACT "the regrasp authors <regrasp@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulated hand that grasps, explores and turns an object")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-    "A simulated 22-joint hand holds a ball it knows nothing about, improves its grasp
-by sliding one finger over the surface, and turns the ball by regrasping with one
-finger after the other. regraspd is the service, regrasp its command line.")
+    "A simulated 22-joint hand holds a ball it knows nothing about, improves
+its grasp by sliding one finger over the surface, and turns the ball by
+regrasping with one finger after the other. regraspd is the service,
+regrasp its command line.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -24,14 +24,14 @@ say "Fresh Debian 12 from $mirror"
 debootstrap --variant=minbase bookworm "$root" "$mirror" >"$build/debootstrap.log" || { tail "$build/debootstrap.log"; exit 1; }
 for file in /etc/apt/apt.conf.d/*proxy* /etc/apt/apt.conf; do [ -e "$file" ] && cp "$file" "$root/etc/apt/apt.conf.d/" || true; done
 mount -t proc proc "$root/proc" 2>/dev/null || say "no /proc inside (not allowed here)"
-inside apt-get -q -y update >/dev/null
+inside apt-get -q -y -o Dpkg::Use-Pty=0 update >/dev/null
 # What the package needs stays when it goes: install that first, so that the rest is the package's own.
 cp "$deb" "$root/tmp/regrasp.deb"
-inside apt-get -q -y install --no-install-recommends $(dpkg-deb --field "$deb" Depends | sed 's/([^)]*)//g; s/|[^,]*//g; s/,/ /g') >/dev/null
+inside apt-get -q -y -o Dpkg::Use-Pty=0 install --no-install-recommends $(dpkg-deb --field "$deb" Depends | sed 's/([^)]*)//g; s/|[^,]*//g; s/,/ /g') >/dev/null
 files >"$build/files.before"
 
 say "Install"
-inside apt-get -q -y install --no-install-recommends /tmp/regrasp.deb | grep -E '^(Setting up|E:|W:)' || true
+inside apt-get -q -y -o Dpkg::Use-Pty=0 install --no-install-recommends /tmp/regrasp.deb | grep -E '^(Setting up|E:|W:)' || true
 files >"$build/files.installed"
 comm -13 "$build/files.before" "$build/files.installed" | grep -v '/models/'
 inside regrasp version
@@ -46,7 +46,7 @@ inside regrasp down
 
 say "Remove"
 inside rm -rf /root/.local /tmp/regrasp-0 /run/regrasp
-inside apt-get -q -y purge regrasp | grep -E '^(Removing|Purging|dpkg: warning|E:|W:)' || true
+inside apt-get -q -y -o Dpkg::Use-Pty=0 purge regrasp | grep -E '^(Removing|Purging|dpkg: warning|E:|W:)' || true
 files >"$build/files.after"
 if ! diff "$build/files.before" "$build/files.after"; then
   say "FAILED: the package left something behind, or took something away"

@@ -32,6 +32,17 @@ def environment(**changes):
     return env
 
 
+def wait_until_it_minds(process, number):
+    """Until a program of ours has taken signal `number` over; before that the signal would just kill it."""
+    while True:
+        with open(f"/proc/{process.pid}/status", encoding="utf-8") as status:
+            caught = next(line for line in status if line.startswith("SigCgt:"))
+        if int(caught.split()[1], 16) >> (number - 1) & 1:
+            return
+        if process.poll() is not None:
+            raise AssertionError(f"ended with {process.returncode} before it could be interrupted")
+
+
 class Case(unittest.TestCase):
     """A test with a directory of its own (`self.dir`) and a socket path in it (`self.socket`)."""
 
@@ -77,7 +88,7 @@ class DaemonCase(Case):
 
     def setUp(self):
         super().setUp()
-        up = self.regrasp("up", *self.ARGUMENTS, "--output-dir", self.dir / "out", "--models-dir", SOURCE / "models")
+        up = self.regrasp("--timeout", HANG_S, "up", *self.ARGUMENTS, "--output-dir", self.dir / "out", "--models-dir", SOURCE / "models")
         log = self.socket.with_suffix(".log")
         self.assertEqual(up.returncode, 0, up.stderr + (log.read_text() if log.exists() else ""))
         self.addCleanup(self.regrasp, "down")

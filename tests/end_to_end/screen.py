@@ -1,5 +1,7 @@
 """A terminal with a user at it: a program under pexpect, its screen kept by pyte."""
 
+import ast
+import mmap
 import re
 import signal
 import termios
@@ -40,10 +42,13 @@ class Session:
         self.stream = Stream(self.screen)
         self.raw = b""
         words = [str(w) for w in words]
+        # The terminal's modes before the program can have changed them: its process looks before it becomes the program.
+        shared = mmap.mmap(-1, 4096)
         # A terminal type with an alternate screen and without "repeat", which pyte does not know.
         self.child = pexpect.spawn(words[0], words[1:], dimensions=(rows, columns), timeout=HANG_S,
-                                   env=environment(**{"TERM": "screen-256color", **env}), echo=True)
-        self.modes = termios.tcgetattr(self.child.child_fd)
+                                   env=environment(**{"TERM": "screen-256color", **env}), echo=True,
+                                   preexec_fn=lambda: shared.write(repr(termios.tcgetattr(0)).encode()))
+        self.modes = ast.literal_eval(shared[:].rstrip(b"\0").decode())
 
     def read(self):
         """Takes in what the program writes next; False at its end."""

@@ -2,6 +2,8 @@
 
 import json
 import os
+import pwd
+import shutil
 import socket
 import subprocess
 import unittest
@@ -53,7 +55,9 @@ class Sockets(Case):
     def as_nobody(self, *words, env):
         """Runs `regrasp` as a user without rights (the tests may run as root, for whom nothing is forbidden)."""
         user = 65534 if os.geteuid() == 0 else None
-        return subprocess.run([str(REGRASP), *words], env=env, capture_output=True, text=True, timeout=HANG_S, check=False, user=user)
+        program = self.dir / "regrasp"  # the build may be where others cannot look
+        shutil.copy(REGRASP, program)
+        return subprocess.run([str(program), *words], env=env, capture_output=True, text=True, timeout=HANG_S, check=False, user=user)
 
     def test_no_right_to_connect(self):
         fake = FakeDaemon(self.socket, {"status": lambda _: STATUS})
@@ -63,8 +67,15 @@ class Sockets(Case):
         self.dir.chmod(0o755)
         done = self.as_nobody("-s", str(self.socket), "status", env=environment())
         self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
-        self.assertIn(f"not allowed to open {self.socket}", done.stderr)
-        self.assertIn("the user who started the daemon", done.stderr)
+        owner = pwd.getpwuid(os.geteuid()).pw_name
+        self.assertIn(f"not allowed to open {self.socket}: it belongs to {owner}", done.stderr)
+        self.assertIn(f"try: regrasp up    (a daemon of your own; or run as {owner})", done.stderr)
+        # Where the directory is closed too, nobody can tell whose it is.
+        self.socket.parent.chmod(0)
+        done = self.as_nobody("-s", str(self.socket), "status", env=environment())
+        self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
+        self.assertIn("run as the user who started this one", done.stderr)
+        self.socket.parent.chmod(0o755)
 
     def test_a_directory_of_another_user_is_not_trusted(self):
         if os.geteuid() != 0:

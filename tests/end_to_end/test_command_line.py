@@ -6,7 +6,7 @@ import os
 import subprocess
 import unittest
 
-from harness import Case, REGRASP, HANG_S, Terminal, environment
+from harness import Case, FakeDaemon, REGRASP, HANG_S, Terminal, environment
 
 GRASP = {
     "contacts": [{"position_m": [0.025 * math.cos(a), 0.025 * math.sin(a), 0], "normal": [-math.cos(a), -math.sin(a), 0], "mu": 0.8}
@@ -99,6 +99,13 @@ class Start(Case):
         done = subprocess.run(["bash", "-c", f"exec {REGRASP} version <&- 2>&-"], capture_output=True, text=True, env=environment(), check=False)
         self.assertEqual((done.returncode, done.stdout[:8]), (0, "regrasp "))
 
+    def test_a_closed_output_is_an_io_error(self):
+        fake = FakeDaemon(self.socket, {"status": lambda _: {"state": "holding"}})
+        self.addCleanup(fake.close)
+        done = subprocess.run(["bash", "-c", f"exec {REGRASP} -s {self.socket} status >&-"], capture_output=True, text=True, env=environment(), check=False)
+        self.assertEqual(done.returncode, 74, done.stderr)
+        self.assertIn("Bad file descriptor", done.stderr)
+
     def test_colour_is_for_terminals_that_want_it(self):
         def coloured(*words, **env):
             terminal = Terminal([REGRASP, "help", *words], environment(TERM="xterm", **env))
@@ -110,6 +117,18 @@ class Start(Case):
         self.assertTrue(coloured("--color", "always", NO_COLOR="1"))
         self.assertNotIn("\x1b[", self.expect(0, "help").stdout)
         self.assertIn("\x1b[", self.expect(0, "--color", "always", "help").stdout)
+
+    def test_colour_of_errors_too(self):
+        def coloured(*words, **env):
+            terminal = Terminal([REGRASP, "status", *words], environment(**{"TERM": "xterm", "REGRASP_SOCKET": str(self.socket), **env}))
+            self.assertEqual(terminal.finish(), 3)
+            return "\x1b[" in terminal.text
+        self.assertTrue(coloured())
+        self.assertFalse(coloured(NO_COLOR="1"))
+        self.assertFalse(coloured(TERM="dumb"))
+        self.assertFalse(coloured("--color", "never"))
+        self.assertNotIn("\x1b[", self.expect(3, "status").stderr)
+        self.assertIn("\x1b[", self.expect(3, "--color", "always", "status").stderr)
 
 
 class Evaluate(Case):

@@ -3,11 +3,12 @@
 import json
 import os
 import pathlib
+import signal
 import stat
 import subprocess
 import unittest
 
-from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, Terminal, environment
+from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, Terminal, environment, wait_until_it_minds
 
 PNG = b"\x89PNG\r\n\x1a\n"
 FINGERS = ["first", "middle", "ring", "little", "thumb"]
@@ -71,11 +72,12 @@ class Session(DaemonCase):
     def test_every_answer_is_readable_at_80_columns(self):
         self.expect(0, "grasp", "--wait")
         for words in (["status"], ["contacts"], ["joints"], ["quality"], ["truth"], ["job", "list"], ["job", "show", "1"], ["noise", "show"], ["param", "list"],
-                      ["param", "get", "gravity"], ["events"], ["explore", "ring"], ["stop"]):
+                      ["param", "get", "gravity"], ["param", "get", "object.friction"], ["events"], ["explore", "ring"], ["stop"]):
             with self.subTest(words):
                 text = self.expect(0, *words).stdout
                 self.assertTrue(text)
                 for line in text.splitlines():
+                    self.assertEqual(line, line.rstrip())
                     if str(self.socket) not in line:
                         self.assertLessEqual(len(line), 80, line)
 
@@ -96,6 +98,17 @@ class Session(DaemonCase):
         self.refused(8, "call", "nonsense")
         self.refused(2, "call", "status", '{"x": 1}')
         self.refused(5, "step", "10")
+        # What to try is a command; what the daemon hints at is part of the cause.
+        for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.01 ... 1", "regrasp param list"),
+                                          (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
+                                          (["reset", "--object", "eg"], "did you mean 'egg'?", "regrasp help reset"),
+                                          (["job", "show", "99"], "no job 99", "regrasp job list"),
+                                          (["call", "status", '{"x": 1}'], "status takes no parameters", "regrasp help call")]:
+            with self.subTest(words):
+                done = self.regrasp(*words)
+                cause, hint = done.stderr.splitlines()
+                self.assertIn(part, cause)
+                self.assertEqual(hint, f"  try: {next_command}")
         self.assertEqual(self.json("status")["state"], "idle")
 
     def test_noise_and_parameters_take_effect(self):
@@ -182,9 +195,8 @@ class Scripted(DaemonCase):
         self.expect(0, "grasp")
         process = subprocess.Popen([str(REGRASP), "-s", str(self.socket), "job", "wait", "1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                    env=environment())
-        while self.json("status")["clients"] < 2:  # its own connection and the waiting one
-            self.assertIsNone(process.poll())
-        process.send_signal(2)
+        wait_until_it_minds(process, signal.SIGINT)
+        process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=HANG_S)
         self.assertEqual((process.returncode, out), (130, ""))
         self.assertIn("job 1 goes on", err)

@@ -1,10 +1,12 @@
 """The documents do not lie: every command in the help, the manual pages and README is run here, and pages made by
 programs are what the programs print."""
 
+import ast
 import json
 import re
 import shutil
 import subprocess
+import sys
 import unittest
 
 from harness import BIN, Case, DaemonCase, HANG_S, REGRASP, REGRASPD, SOURCE, environment
@@ -95,6 +97,28 @@ class Documents(DaemonCase):
         for line in lines:
             with self.subTest(line):
                 self.run_line(line)
+
+    def test_what_the_protocol_pages_show(self):
+        (self.dir / "regrasp").symlink_to(self.socket.parent)  # where `regrasp up` would have put it
+        env = {**self.env, "XDG_RUNTIME_DIR": str(self.dir)}
+        for page in ("docs/protocol.md", "docs/man/regrasp-protocol.7.scd"):
+            text = (SOURCE / page).read_text().replace(r"\\n", r"\n")  # scdoc's way to write a backslash
+            (line,) = re.findall(r"^\$ (.*)$", text, re.M)
+            with self.subTest(page, line=line):
+                done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=env, timeout=HANG_S, check=True)
+                self.assertIn("state", json.loads(done.stdout)["result"])
+            program = re.search(r"^import json.*?(?=^```)", text, re.S | re.M)[0]
+            with self.subTest(page, program=program):
+                self.run_line("regrasp reset")
+                with subprocess.Popen([sys.executable, "-u", "-c", program], stdout=subprocess.PIPE, text=True, env=env) as client:
+                    self.assertIn("job", ast.literal_eval(client.stdout.readline())["result"])
+                    client.kill()  # it listens for ever
+
+    def test_the_configuration_file_of_the_manual(self):
+        text = (SOURCE / "docs/man/regraspd.8.scd").read_text()
+        (file,) = [block for block in re.findall(r"^```\n(.*?)^```", text, re.S | re.M) if "[parameters]" in block]
+        (self.dir / "manual.toml").write_text(file)
+        self.run_line("regrasp config check manual.toml")
 
     def test_commands_of_the_readme_in_their_order(self):
         text = (SOURCE / "README.md").read_text()

@@ -11,10 +11,21 @@ EXAMPLES = SOURCE / "examples"
 
 
 class Examples(DaemonCase):
-    def run_example(self, *words):
-        done = subprocess.run([str(word) for word in words], capture_output=True, text=True, env=environment(), cwd=self.dir, timeout=HANG_S, check=False)
+    def run_example(self, *words, **env):
+        done = subprocess.run([str(word) for word in words], capture_output=True, text=True, env=environment(**env), cwd=self.dir, timeout=HANG_S, check=False)
         self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
         return done.stdout
+
+    def test_each_finds_the_socket(self):
+        watch = self.dir / "watch"
+        subprocess.run(["g++", "-std=c++20", EXAMPLES / "watch.cc", "-o", watch], check=True, timeout=HANG_S)
+        (self.dir / "regrasp").symlink_to(self.socket.parent)  # where `regrasp up` would have put it
+        for env in ({"REGRASP_SOCKET": str(self.socket)}, {"XDG_RUNTIME_DIR": str(self.dir)}):
+            with self.subTest(*env):
+                self.run_example("sh", EXAMPLES / "grasp_and_turn.sh", **env)
+                self.run_example(sys.executable, EXAMPLES / "explore.py", **env)
+                self.run_example(watch, **env)
+                self.expect(0, "reset", "--seed", "1")
 
     def test_shell(self):
         grasped, turned, truth = map(json.loads, self.run_example("sh", EXAMPLES / "grasp_and_turn.sh", self.socket).splitlines())

@@ -26,7 +26,7 @@ class Package(Case):
         for path in ["bin/regrasp", "bin/regraspd", "share/regrasp/models/hands/shadow.urdf", "share/man/man1/regrasp.1.gz", "share/man/man8/regraspd.8.gz",
                      "share/man/man7/regrasp-protocol.7.gz", "share/bash-completion/completions/regrasp", "share/zsh/vendor-completions/_regrasp",
                      "share/fish/vendor_completions.d/regrasp.fish", "lib/systemd/system/regraspd.service", "lib/systemd/system/regraspd.socket",
-                     "share/doc/regrasp/copyright", "share/doc/regrasp/examples/explore.py"]:
+                     "share/doc/regrasp/copyright", "share/doc/regrasp/changelog.gz", "share/doc/regrasp/examples/explore.py"]:
             self.assertTrue((self.root / "usr" / path).is_file(), path)
         self.assertIn("ExecStart=/usr/bin/regraspd ", (self.root / "usr/lib/systemd/system/regraspd.service").read_text())
         self.assertIn(b'regrasp \\- hold', gzip.decompress((self.root / "usr/share/man/man1/regrasp.1.gz").read_bytes()).replace(b" - ", b" \\- "))

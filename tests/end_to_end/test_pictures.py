@@ -6,7 +6,7 @@ import struct
 import unittest
 import zlib
 
-from harness import Case, FakeDaemon, REGRASP, environment
+from harness import Case, FakeDaemon, HANG_S, REGRASP, environment
 from screen import Session
 
 WIDTH, HEIGHT = 160, 80
@@ -32,7 +32,7 @@ class Pictures(Case):
 
     def show(self, answer, *options, **env):
         """Plots on a terminal that answers the questions with `answer`; returns all that was written after them."""
-        session = Session([REGRASP, "-s", self.socket, *options, "plot", "quality", "--show"], rows=30, columns=80, **env)
+        session = Session([REGRASP, "-s", self.socket, "--timeout", HANG_S, *options, "plot", "quality", "--show"], rows=30, columns=80, **env)
         self.addCleanup(session.child.close)
         if answer is not None:
             while b"\x1b[c" not in session.raw:

@@ -41,7 +41,9 @@ class Runs(DaemonCase):
 
     def test_a_run_replays_in_another_process_and_tampering_shows(self):
         path = self.record()
+        self.assertIn("run.mcap", self.expect(0, "status").stdout)
         stopped = self.json("record", "stop")
+        self.assertNotIn("run.mcap", self.expect(0, "status").stdout)
         self.assertEqual(stopped["dropped"], 0)
         whole = self.json("replay", "run")  # by its name in the output directory
         self.assertTrue(whole["identical"])

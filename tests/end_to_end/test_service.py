@@ -70,7 +70,9 @@ class Config(Case):
 
     def test_errors_name_file_line_and_nearest_name(self):
         for text, parts in [("seed = 1\nspede = 2\n", [":2:", "'speed'"]), ("noise = \"papr\"\n", [":1:", "'paper'"]), ("seed = \n", [":1:"]),
-                            ("max_clients = 5000\n", ["1 ... 1000"])]:
+                            ("max_clients = 5000\n", ["1 ... 1000"]), ("seed = 'one'\n", [":1:", "seed = 'one': expected an integer"]),
+                            ("[parameters]\nobject.friction = 99\n", [":2:", "object.friction = 99: expected a number, 0.01 ... 1"]),
+                            ("[parameters]\ngravity = [0, 0]\n", [":2:", "gravity = [ 0, 0 ]: expected 3 numbers"])]:
             file = self.write(text)
             cause, hint = self.refused(2, "config", "check", file)
             self.assertTrue(cause.startswith(f"regrasp: {file}:"), cause)
@@ -83,6 +85,21 @@ class Config(Case):
         done = subprocess.run([REGRASPD, "--print-config"], env=environment(REGRASP_SEED="-1"), capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 2)
         self.assertIn("$REGRASP_SEED", done.stderr)
+
+
+class Printing(Case):
+    def test_a_full_disk_is_74(self):
+        for flag in ("--help", "--version", "--print-default-config", "--print-config", "--print-protocol", "--print-manual", "--print-protocol-manual",
+                     "--check-config"):
+            with self.subTest(flag), open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([REGRASPD, flag, *MODELS], stdout=full, stderr=subprocess.PIPE, text=True, env=environment(), check=False)
+                self.assertEqual(done.returncode, 74, done.stderr)
+                self.assertIn("cannot write to standard output: No space left on device", done.stderr)
+
+    def test_a_mistyped_flag_is_named(self):
+        done = subprocess.run([REGRASPD, "--sped", "max"], capture_output=True, text=True, env=environment(), check=False)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertEqual(done.stderr, "regraspd: unknown argument --sped; did you mean --speed?\ntry: regraspd --help\n")
 
 
 class Manager:

@@ -1,14 +1,30 @@
 """`regrasp shell`: typed at a terminal, read from a file or a pipe."""
 
 import json
+import pathlib
 import re
 import signal
 import stat
 import subprocess
+import threading
+import time
 import unittest
 
-from harness import Case, DaemonCase, HANG_S, REGRASP, environment
+from harness import Case, DaemonCase, FakeDaemon, HANG_S, REGRASP, environment
 from screen import Session
+
+
+def children(parent):
+    """The numbers of the processes that `parent` has started and not yet taken leave of."""
+    found = []
+    for stat_file in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat_file.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue  # it has ended meanwhile
+        if int(fields[1]) == parent:
+            found.append(int(stat_file.parent.name))
+    return found
 
 
 class Script(Case):
@@ -70,7 +86,8 @@ class Script(Case):
 
 class Typed(DaemonCase):
     def shell(self, *words, rows=30, columns=100):
-        session = Session([REGRASP, "-s", self.socket, *words], rows, columns, HOME=str(self.dir), XDG_STATE_HOME="")
+        # With the usual patience, a loaded machine may let Tab and the prompt do without the daemon.
+        session = Session([REGRASP, "-s", self.socket, "--timeout", HANG_S, *words], rows, columns, HOME=str(self.dir), XDG_STATE_HOME="")
         self.addCleanup(session.child.close)
         session.wait(r"Tab completes")
         session.wait(r"regrasp \w+>$")
@@ -130,10 +147,48 @@ class Typed(DaemonCase):
         self.assertEqual(self.json("job", "show", "2")["state"], "running")
         self.answer(session, "stop\r", "job 2 stopped")
 
+    def test_control_c_ends_other_programs_and_not_the_shell(self):
+        session = self.shell("shell")
+        session.press("bench --seconds 1000\r")
+        deadline = time.monotonic() + HANG_S
+        while not children(session.child.pid):  # the measurement runs in a program of its own
+            self.assertLess(time.monotonic(), deadline)
+        self.answer(session, "\x03", r"(?s)regrasp: interrupted.*idle>$")
+        self.assertEqual(children(session.child.pid), [])
+        self.answer(session, "version\r", r"regrasp \d+\.\d+\.\d+\n")
+
     def test_a_signal_gives_the_terminal_back(self):
         session = self.shell("shell")
         session.kill(signal.SIGTERM)
         self.assertEqual(session.finish(), -signal.SIGTERM)
+        self.assertEqual(session.modes_after, session.modes)
+
+
+class Unanswered(Case):
+    def test_control_c_ends_the_wait_and_not_the_shell(self):
+        silent = threading.Event()
+        fake = FakeDaemon(self.socket, {"status": lambda _: None if silent.is_set() else {"state": "holding"}})
+        self.addCleanup(fake.close)
+        session = Session([REGRASP, "-s", self.socket, "--timeout", HANG_S, "shell"], HOME=str(self.dir), XDG_STATE_HOME="")
+        self.addCleanup(session.child.close)
+        session.wait("holding>$")
+        silent.set()
+        session.press("status\r")
+        deadline = time.monotonic() + HANG_S
+        for asked in (2, 3):  # by the command, then by the prompt after it
+            while len(fake.requests) < asked:
+                self.assertLess(time.monotonic(), deadline)
+            session.press("\x03")
+        session.wait(r"(?s)regrasp: interrupted.*regrasp \(no answer\)>$")
+        silent.clear()
+        session.press("version\r")
+        session.wait(r"(?s)regrasp \d+\.\d+\.\d+\n.*holding>$")
+        silent.set()
+        session.press("status\r")
+        while len(fake.requests) < 5:
+            self.assertLess(time.monotonic(), deadline)
+        session.kill(signal.SIGTERM)  # this is meant for the shell
+        self.assertEqual(session.finish(), 130)
         self.assertEqual(session.modes_after, session.modes)
 
 

@@ -2,9 +2,10 @@
 
 import re
 import signal
+import socket
 import unittest
 
-from harness import Case, DaemonCase, REGRASP, environment
+from harness import Case, DaemonCase, FakeDaemon, REGRASP, environment
 from screen import Session
 
 FINGERS = ["F first", "M middle", "R ring", "L little", "T thumb"]
@@ -140,6 +141,24 @@ class Leaving(Top):
         after = session.raw[session.raw.rindex(LEAVE_ALTERNATE_SCREEN):].decode()
         self.assertIn("closed the connection", after)
         self.assertIn("try: regrasp up", after)
+
+
+class Again(Case):
+    def test_a_connection_that_was_closed_is_made_again(self):
+        status = {"state": "holding", "version": "9.9.9", "time_s": 1.5, "clients": 1}
+        fake = FakeDaemon(self.socket, {"events": lambda _: {"events": [{"kind": "x", "t_s": 1, "text": "once only"}]}, "status": lambda _: status,
+                                        "contacts": lambda _: {}, "quality": lambda _: {}, "subscribe": lambda _: {"sub": 1}})
+        self.addCleanup(fake.close)
+        session = Session([REGRASP, "-s", self.socket, "top"])
+        self.addCleanup(session.child.close)
+        session.wait("HOLDING")
+        status["state"] = "rotating"
+        fake.connections[0].shutdown(socket.SHUT_RDWR)
+        session.wait("connected again")
+        text = session.wait("ROTATING")
+        self.assertEqual(text.count("once only"), 1)
+        session.press("q")
+        self.assertEqual(session.finish(), 0)
 
 
 class Looks(Top):

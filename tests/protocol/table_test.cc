@@ -86,6 +86,8 @@ TEST(NearestName, FindsTypingErrorsAndNothingElse) {
   EXPECT_EQ(NearestName("litle", names), "little");
   EXPECT_EQ(NearestName("elbow", names), "");
   EXPECT_EQ(NearestName("", names), "");
+  // One slip from both: the beginning decides, not the order.
+  EXPECT_EQ(NearestName("sped", std::vector<std::string_view>{"seed", "speed"}), "speed");
   EXPECT_EQ(EditDistance("abcd", "acbd"), 1u);  // a swap is one slip
 }
 
