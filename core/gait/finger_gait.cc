@@ -17,6 +17,7 @@ constexpr double kInsideDisc = 0.9;  // of the disc's radius: what is remembered
 constexpr int kSearchTicks = 5;      // from one evaluation of a stance to the next
 constexpr int kSearchLimit = 300;    // evaluations
 constexpr double kMostLead = 0.35;   // rad
+constexpr double kFullDisc = 0.5;    // of the wanted margin: from there on the whole disc is free
 constexpr double kWantMore = 1.5;    // of the margin of the stance from which a finger was refused
 constexpr int kIdleCycles = 3;       // cycles without progress before the gait gives up
 
@@ -133,7 +134,7 @@ void FingerGait::EndMotion() {
 double FingerGait::DiscShare(const GaitParameters& parameters) const {
   if (order_.empty()) return 1;
   const double margin = smooth_.without[order_.back().finger] - parameters.margin_min;
-  const double wanted = parameters.margin_wanted - parameters.margin_min;
+  const double wanted = kFullDisc * parameters.margin_wanted - parameters.margin_min;
   return wanted > 0 ? std::clamp(margin / wanted, 0.0, 1.0) : 1.0;
 }
 
@@ -268,7 +269,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
     FingerTask& task = (*tasks)[i];
     task.mode = FingerMode::kHold;
     task.cap = control.max_normal_force;
-    task.grip = control.grip_force;
+    task.grip = parameters.grip_force;
   }
   const ObjectWrench& wrench = controller->wrench();
 

@@ -164,7 +164,7 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
       const double low = request_.hop ? parameters.hop_force : parameters.slide_force;
       task.mode = FingerMode::kHold;
       task.cap = cap_start_ + ramp * (std::min(low, cap_start_) - cap_start_);
-      task.grip = std::min(control.grip_force, task.cap);
+      task.grip = std::min(parameters.grip_force, task.cap);
       if (abort_) {
         Enter(Phase::kReload);
       } else if (ramp >= 1.0) {
@@ -243,13 +243,13 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
         if (request_.explore) controller->RestHere(estimate, request_.finger);
       }
       task.mode = FingerMode::kHold;
-      task.cap = std::max(cap_start_, cap_start_ + ramp * (control.grip_force - cap_start_));
-      task.grip = std::min(control.grip_force, task.cap);
+      task.cap = std::max(cap_start_, cap_start_ + ramp * (parameters.grip_force - cap_start_));
+      task.grip = std::min(parameters.grip_force, task.cap);
       if (ramp < 1.0) break;
       lost_ = !touching && ticks_ * dt > kLost_s;
       if (!touching && !lost_) break;
       task.cap = control.max_normal_force;
-      task.grip = control.grip_force;
+      task.grip = parameters.grip_force;
       Enter(Phase::kDone);
       break;
     }

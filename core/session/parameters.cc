@@ -86,6 +86,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"gait.down_speed", "m/s", 0.002, 0.3, 1, "Hop: speed of the fingertip on its way down to the surface.", kMeasured, [](P& p) { return &p.gait.down_speed; }},
   {"gait.estimator", "", 0, 1, 1, "Exploring: 1 estimates the gradient by least squares, 0 by the printed rule.", kPaper, [](P& p) { return &p.gait.estimator; }},
   {"gait.explore_s", "s", 0.05, 20, 1, "Exploring: longest run of Algorithm 1 per regrasp.", kOurs, [](P& p) { return &p.gait.explore_s; }},
+  {"gait.grip_force", "N", 0.1, 10, 1, "Preferred normal force of a holding finger while the object turns.", kMeasured, [](P& p) { return &p.gait.grip_force; }},
   {"gait.hop", "", 0, 1, 1, "1: a finger hops to its target; 0: it slides.", kOurs, [](P& p) { return &p.gait.hop; }},
   {"gait.hop_force", "N", 0.01, 1, 1, "Hop: normal force at which the fingertip leaves the surface.", kMeasured, [](P& p) { return &p.gait.hop_force; }},
   {"gait.lag_position", "m", 0.0002, 0.05, 1, "The turning reference waits while the object is this far behind.", kOurs, [](P& p) { return &p.gait.lag_position; }},

@@ -41,8 +41,8 @@ class Snapshots : public ::testing::Test {
 
   const HandModel hand_ = SyntheticHand();
   const std::vector<Frame> run_ = SyntheticRun(6);
-  const std::vector<Event> events_ = {{1000, EventKind::kContactMade, 0, 0, "contact"},
-                                      {2500, EventKind::kPush, -1, 0, "push"}};
+  const std::vector<Event> events_ = {{1000, EventKind::kContactMade, 0, 0, 0, "contact"},
+                                      {2500, EventKind::kPush, -1, 0, 0, "push"}};
   const ObjectModel object_;
   fs::path folder_;
 };
