@@ -297,7 +297,7 @@ int Explore(const Options& o) {
   return 0;
 }
 
-/// One regrasp whose objective was manipulability.
+/// One regrasp that was not broken off, by noise-free values of its objective.
 struct PhiChange {
   int finger;
   double before, start, after;
@@ -305,7 +305,8 @@ struct PhiChange {
 
 /// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused,
 /// dropped, angle error deg, regrasps on manipulability, of them higher after than before,
-/// explorations begun below 98 % of best, of them rose, mean change start-to-after, mean after}
+/// explorations begun below 98 % of best, of them rose, mean change start-to-after, mean after,
+/// explorations for stability (S_F), of them rose, mean at their start, mean after}
 Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
   if (!Grasp(session)) return {kFailed};
   Command c;
@@ -317,7 +318,7 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   session.Apply(c);
   JobRecord job;
   double slips = 0, refused = 0, touching = 0;
-  std::vector<PhiChange> changes;
+  std::vector<PhiChange> changes, shifts;  // for manipulability; for stability
   const auto limit =
       session.tick() + static_cast<std::int64_t>(std::abs(o.turns) * 1000 * 1000) + 30000;
   RandomStream pushes(seed, 3000);
@@ -336,8 +337,9 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
       refused += e.kind == EventKind::kRefused;
       if (e.kind != EventKind::kRegrasp) continue;
       const RegraspRecord& r = session.last_regrasp();
-      if (r.criterion != Criterion::kStability && !r.on_stability && !r.aborted && r.phi_start > 0)
-        changes.push_back({r.finger, r.phi_before, r.phi_start, r.phi_after});
+      if (r.aborted || r.phi_start <= 0) continue;
+      const bool stability = r.criterion == Criterion::kStability || r.on_stability;
+      (stability ? shifts : changes).push_back({r.finger, r.phi_before, r.phi_start, r.phi_after});
     }
     for (const JobRecord& j : session.TakeFinishedJobs()) job = j;
   }
@@ -358,6 +360,12 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
     if (p.start >= 0.98 * best[p.finger]) continue;
     low += 1;
     low_rose += p.after > p.start;
+  }
+  double raised = 0, stability_start = 0, stability_after = 0;
+  for (const PhiChange& p : shifts) {
+    raised += p.after > p.start;
+    stability_start += p.start / static_cast<double>(shifts.size());
+    stability_after += p.after / static_cast<double>(shifts.size());
   }
   const RotateResult& r = job.rotate;
   const double wanted = o.turns * 360, angle = r.angle_rad * 180 / M_PI;
@@ -384,7 +392,11 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
           low,
           low_rose,
           changes.empty() ? 0 : gain / static_cast<double>(changes.size()),
-          changes.empty() ? 0 : phi / static_cast<double>(changes.size())};
+          changes.empty() ? 0 : phi / static_cast<double>(changes.size()),
+          static_cast<double>(shifts.size()),
+          raised,
+          stability_start,
+          stability_after};
 }
 
 int Rotate(const Options& o) {
@@ -407,7 +419,8 @@ int Rotate(const Options& o) {
     });
     int done = 0, failed = 0, dropped = 0;
     std::vector<double> rate, offset, tilt, error, slips, refused, gain, phi;
-    double explored = 0, rose = 0, low = 0, low_rose = 0;
+    double explored = 0, rose = 0, low = 0, low_rose = 0, shifted = 0, raised = 0;
+    std::vector<double> stability_start, stability_after;
     for (const Row& r : rows) {
       if (r.empty() || r[0] == kFailed) {
         ++failed;
@@ -429,6 +442,10 @@ int Rotate(const Options& o) {
       rose += r[11];
       low += r[12];
       low_rose += r[13];
+      shifted += r[16];
+      raised += r[17];
+      stability_start.push_back(r[18]);
+      stability_after.push_back(r[19]);
     }
     std::printf(
         "%-8s %.3g turns  done %2d/%-2zu  dropped %d  not grasped %d  mean %5.1f deg/min  offset "
@@ -447,6 +464,11 @@ int Rotate(const Options& o) {
           "below 98 %% of "
           "the best reached\n",
           100 * Mean(gain), low_rose, low);
+    if (o.exploring && shifted > 0)
+      std::printf(
+          "         before the opposing finger leaves, explorations took the stability without it "
+          "from %.3f to %.3f on average; it rose in %.0f of %.0f\n",
+          Mean(stability_start), Mean(stability_after), raised, shifted);
     std::fflush(stdout);
   }
   return 0;

@@ -69,7 +69,7 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
                   kOneMotion_deg));
   plan->subjects = {"1,0,0", "-1,0,0", "0,1,0", "0,-1,0", "0,0,1", "0,0,-1"};
   plan->turns = kOneMotion_deg / 360;
-  plan->common.set = {{"gait.step_rad", "0.6"}, {"gait.margin_wanted", "0"}};
+  plan->common.set = {{"gait.step_rad", "0.6"}, {"gait.lead", "0"}, {"gait.margin_wanted", "0"}};
   plan = add("noise", "Rotation against noise", "Every preset of sensor noise, returning gait.");
   plan->noise = {"off", "fine", "paper", "coarse", "taxel"};
   plan =
@@ -98,17 +98,19 @@ std::vector<PaperPart> PaperParts(const PaperSize& size) {
       Cases({fmt::format("returning, 5 turns: turns={}", 5 * size.turns),
              fmt::format("exploring, 5 turns: turns={} gait.mode=0", 5 * size.turns),
              fmt::format("exploring for 1 s: turns={} gait.mode=0 gait.explore_s=1", size.turns),
-             "returning, fastest: gait.step_rad=0.5236 gait.lead=0.5 gait.speed_rad_s=0.7 "
-             "gait.acceleration=8 gait.transfer_s=0.03 gait.lift_speed=0.1 gait.across_speed=0.15 "
-             "gait.down_speed=0.05 gait.settle_s=0.05"});
+             "returning, fastest: gait.step_rad=0.5236 gait.speed_rad_s=0.7"});
   plan = add("ablations", "Ablations",
              "The exploring gait without one of its parts, and a plain return to the first contact "
-             "in place of every exploration.");
+             "in place of every exploration. In the last two rows a motion goes on until a finger "
+             "can follow no further: what exploring gains in how far the object turns.");
   plan->common.set = {{"gait.mode", "0"}};
   plan->cases = Cases({"complete:", "no excursion bound: gait.disc_radius=0.02",
                        "no load margin: gait.margin_min=0 gait.margin_wanted=0",
                        "no load transfer: gait.transfer_s=0.001",
-                       "printed gradient rule: gait.estimator=0", "plain return: gait.mode=1"});
+                       "printed gradient rule: gait.estimator=0", "plain return: gait.mode=1",
+                       "exploring, as far as it goes: gait.step_rad=1.2 gait.lead=0.145",
+                       "plain return, as far as it goes: gait.step_rad=1.2 gait.lead=0.145 "
+                       "gait.mode=1"});
   for (PaperPart& part : parts) {
     part.plan.first_seed = size.seed;
     part.plan.models_dir = size.models_dir;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <vector>
 
 #include "cli/errors.h"
@@ -89,20 +90,20 @@ std::string RotationTable(const Json& summary) {
       summary.at("groups").begin(), summary.at("groups").end(),
       [](const Json& g) { return g.at("quantiles").at("phi_rise_share").at("n") != 0; });
   std::string text = fmt::format(
-      "| | completed | dropped | stopped, object held | °/min, median | object off its place, most "
-      "| "
-      "slips, mean |{}\n|---|---|---|---|---|---|---|{}\n",
+      "| | completed | dropped | stopped, object held | °/min, median | ° between regrasps, mean | "
+      "object off its place, most | slips, mean |{}\n|---|---|---|---|---|---|---|---|{}\n",
       explores ? " φ rose | gain of φ |" : "", explores ? "---|---|" : "");
   for (const Json& g : summary.at("groups")) {
     const Json& quantiles = g.at("quantiles");
     const int stopped = NumberOf(g, "failed") + NumberOf(g, "refused") + NumberOf(g, "unfinished");
     const int ungrasped = NumberOf(g, "not_grasped");
     text +=
-        fmt::format("| {} | {} | {} | {} | {} | {} mm | {} |", RowName(plan, g),
+        fmt::format("| {} | {} | {} | {} | {} | {} | {} mm | {} |", RowName(plan, g),
                     Share(g, "completed"), NumberOf(g, "dropped"),
                     fmt::format("{}{}", stopped,
                                 ungrasped > 0 ? fmt::format("; {} not grasped", ungrasped) : ""),
                     Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
+                    Fixed(At(quantiles.at("step_mean_rad"), "mean"), 1, 180 / std::numbers::pi),
                     Fixed(At(quantiles.at("max_position_error_m"), "max"), 1, 1e3),
                     Fixed(At(quantiles.at("slips"), "mean"), 1));
     if (explores && quantiles.at("phi_rise_share").at("n") == 0)

@@ -20,8 +20,9 @@ struct Columns {
 Columns ColumnsOf(const Plan& plan) {
   if (plan.rotation())
     return {{"completed"},
-            {"rate_deg_min", "max_position_error_m", "max_tilt_rad", "angle_rad", "angle_error_rad",
-             "regrasps", "slips", "refusals", "phi_rise_share", "phi_gain_mean", "sim_time_s"}};
+            {"rate_deg_min", "step_mean_rad", "max_position_error_m", "max_tilt_rad", "angle_rad",
+             "angle_error_rad", "regrasps", "slips", "refusals", "phi_rise_share", "phi_gain_mean",
+             "sim_time_s"}};
   Columns columns = {{"rose"}, {"phi_true_gain", "cycles", "path_length_m", "object_moved_m"}};
   if (plan.rays > 0) {
     columns.counts.push_back("near_best");

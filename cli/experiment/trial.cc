@@ -150,6 +150,8 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
     row[key] = turned ? At(record, key) : Json();
   const double angle = turned ? record.at("angle_rad").get<double>() : 0;
   const double time = turned ? record.at("sim_time_s").get<double>() : 0;
+  row["step_mean_rad"] =
+      turned ? Json(std::abs(angle) / (record.at("gait_cycles").get<double>() + 1)) : Json();
   row["angle_error_rad"] =
       turned ? Json(std::abs(angle - 2 * std::numbers::pi * turns_wanted)) : Json();
   const bool completed = row["outcome"] == "done";

@@ -149,13 +149,13 @@ StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) c
 Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const GaitParameters& parameters) const {
   const StanceContact home = HomeOf(finger, parameters);
+  Vector3d recall = Vector3d::Zero();
   if (parameters.mode == static_cast<double>(GaitMode::kExploring)) {
     const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
-    const StanceContact found = Shifted(home, TangentPart(share * found_[finger], home.normal_W));
-    return {wrench.p_ref() + home.p_OC, wrench.p_ref() + home.p_OF, home.normal_W,
-            wrench.p_ref() + found.p_OC};
+    recall = Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
   }
-  return {wrench.p_ref() + home.p_OC, wrench.p_ref() + home.p_OF, home.normal_W, wrench.p_ref()};
+  const Vector3d& centre = wrench.p_ref();
+  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, centre + recall, centre};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,

@@ -22,6 +22,21 @@ constexpr double kDiscSlack = 0.0005;  // a best contact may be so far beyond th
 constexpr double kDiscReturn =
     1.0;  // share of the excess over the disc that counts as a wall's depth
 
+/// Unit direction at `from` of the arc to `to` about the origin: the angle and the distance from
+/// the origin change in proportion. Zero where they coincide.
+Vector3d ArcDirection(const Vector3d& from, const Vector3d& to) {
+  constexpr double kNearlyStraight = 0.05;  // rad
+  const Vector3d radial = from.normalized();
+  const Vector3d across = to - to.dot(radial) * radial;
+  const double angle = std::atan2(across.norm(), to.dot(radial));
+  if (angle < kNearlyStraight) {
+    const Vector3d way = to - from;
+    return way.norm() > 1e-9 ? Vector3d(way.normalized()) : Vector3d(Vector3d::Zero());
+  }
+  const double arc = angle * from.norm();
+  return (across.normalized() * arc + radial * (to.norm() - from.norm())).normalized();
+}
+
 }  // namespace
 
 std::string_view Name(Regrasp::Phase phase) {
@@ -186,11 +201,9 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
 
     case Phase::kAcross: {
       const Vector3d above = target.p_WF + parameters.lift_height * target.normal_W;
-      const Vector3d way = above - p_target_W_;
-      const double distance = way.norm();
+      const double distance = (above - p_target_W_).norm();
       const double speed = std::min(parameters.across_speed, distance / dt);
-      Reach(distance > 1e-9 ? Vector3d(way * (speed / distance)) : Vector3d(Vector3d::Zero()), dt,
-            &task);
+      Reach(speed * ArcDirection(p_target_W_ - target.p_WO, above - target.p_WO), dt, &task);
       if (distance > 1e-6) ticks_ = 0;  // counts from when the target has arrived
       // Something is in the way: the finger stands where it touches, rather than push the object.
       if (finger.in_contact && finger.ticks_in_contact >= kTouchTicks && path_ > kClear) {

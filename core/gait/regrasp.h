@@ -45,7 +45,8 @@ class Regrasp {
     Vector3d p_WC = Vector3d::Zero();       ///< contact [m]
     Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
     Vector3d normal_W = Vector3d::UnitZ();  ///< outward
-    Vector3d p_WR = Vector3d::Zero();       ///< explore: where the last explorations ended [m]
+    Vector3d p_WR = Vector3d::Zero();       ///< explore: the last explorations' end [m]
+    Vector3d p_WO = Vector3d::Zero();  ///< the object's centre, about which a hop is an arc [m]
   };
 
   void Start(const Request& request);
