@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,10 @@ class Samples {
     const auto k = static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(k), sorted.end());
     return sorted[k];
+  }
+  double Mean() const {
+    const double sum = std::accumulate(us_.begin(), us_.end(), 0.0);
+    return us_.empty() ? 0 : sum / static_cast<double>(us_.size());
   }
 
  private:
@@ -151,7 +156,7 @@ void Print(const char* state, const Row& row, const Measured& m, const Measured&
   const double total = m.total.Quantile(.5);
   std::printf("%-9s %-16s", state, row.name().c_str());
   for (const Samples* s : {&m.sense, &m.control, &m.collide, &m.step, &m.total})
-    std::printf("  %6.1f %6.1f %6.1f", s->Quantile(.5), s->Quantile(.9), s->Quantile(.99));
+    std::printf("  %6.1f %6.1f %6.1f", s->Quantile(.5), s->Mean(), s->Quantile(.99));
   std::printf("   %5.2f   %7.4f %5.2f  %7.1f\n", total / bare_us, m.ForceNoise(),
               m.ForceNoise() / exact.ForceNoise(), 1e6 * m.drift_m);
 }
@@ -190,7 +195,7 @@ int Main(int argc, char** argv) {
   std::printf("%-9s %-16s  %20s  %20s  %20s  %20s  %20s   %5s   %7s %5s  %7s\n", "state", "stepper",
               "sense", "control", "collide", "step", "tick", "ratio", "F sd N", "rel", "drift um");
   std::printf("%-26s", "[us]");
-  for (int i = 0; i < 5; ++i) std::printf("  %6s %6s %6s", "median", "p90", "p99");
+  for (int i = 0; i < 5; ++i) std::printf("  %6s %6s %6s", "median", "mean", "p99");
   std::printf("\n");
   for (int exploring = 0; exploring < 2; ++exploring) {
     const auto Of = [&](const Row& row) -> const Measured& {
