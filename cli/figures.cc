@@ -122,6 +122,7 @@ Figures::Exploration Figures::Explore(const std::string& finger, const std::stri
         if (At(quality, "stability").is_number())
           run.least_stability = std::min(run.least_stability, quality["stability"].get<double>());
       });
+  run.last_stability = daemon_.Call("quality").value("stability", 0.0);
   MustHold("exploring (" + finger + ")");
   return run;
 }
@@ -139,7 +140,11 @@ void Figures::Explorations(int repeats) {
     Add(finger == fingers.front() ? "exploring raises " + phi + " (Sec. III a)" : "",
         fmt::format("{:<6} {}", finger, Rise(run.record)), Rose(run.record));
   }
-  if (std::find(fingers.begin(), fingers.end(), "ring") == fingers.end()) return;
+  const auto has = [&](const char* finger) {
+    return std::find(fingers.begin(), fingers.end(), finger) != fingers.end();
+  };
+  if (has("little")) Tradeoff();
+  if (!has("ring")) return;
   Figure2();
   Repeats(repeats);
 }
@@ -167,6 +172,21 @@ void Figures::Figure2() {
   Add("fig. 2: stable throughout",
       fmt::format("stability at least {:.3f}, threshold {:.3f}", least, threshold),
       least >= threshold && daemon_.Call("status").at("state") != "dropped");
+}
+
+void Figures::Tradeoff() {
+  Say("figure 2 of the little finger, whose better manipulability costs stability");
+  const Exploration first = Explore("little", "manipulability", seed_);
+  const Exploration second = Explore("little", "combined", seed_);
+  Picture("comparison", "figure2-little.png");
+  measured_["tradeoff"] = {{"manipulability", first.record},
+                           {"combined", second.record},
+                           {"first_stability", first.first_stability},
+                           {"last_stability", {first.last_stability, second.last_stability}}};
+  Add("fig. 2: the sum keeps stability",
+      fmt::format("little: {:.2f} to {:.2f}, without it {:.2f}", second.first_stability,
+                  second.last_stability, first.last_stability),
+      second.last_stability > first.last_stability);
 }
 
 void Figures::Repeats(int repeats) {

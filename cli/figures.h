@@ -33,8 +33,9 @@ class Figures {
 
   /// Figure 1: the object in the hand. Throws CliError(kFailed) when it cannot be grasped.
   void Grasp();
-  /// Each finger explores; figure 2; `repeats` explorations of the ring finger with other start
-  /// gradients. Figure 2 and the repeats are left out for a hand without a ring finger.
+  /// Each finger explores; figure 2, and the same of the little finger, whose better manipulability
+  /// costs stability; `repeats` explorations of the ring finger with other start gradients. What
+  /// needs a finger that the hand does not have is left out.
   void Explorations(int repeats);
   /// Figures 3a and 3b: one rotation with fingers that return to their first contact, one with
   /// fingers that explore.
@@ -43,14 +44,15 @@ class Figures {
   const std::vector<Claim>& claims() const { return claims_; }
   /// The hand held the object to the end of every step.
   bool held() const { return held_; }
-  /// Everything measured: members hold, explore, figure2, repeats, rotate, pictures.
+  /// Everything measured: members hold, explore, figure2, tradeoff, repeats, rotate,
+  /// pictures.
   const Json& measured() const { return measured_; }
 
  private:
   struct Exploration {
     Json record;
     std::string start_hash;
-    double first_stability = 0, least_stability = 1e300;
+    double first_stability = 0, least_stability = 1e300, last_stability = 0;
   };
 
   void Say(const std::string& text);
@@ -58,6 +60,7 @@ class Figures {
   Exploration Explore(const std::string& finger, const std::string& criterion,
                       std::int64_t gradient_seed);
   void Figure2();
+  void Tradeoff();
   void Repeats(int repeats);
   void Rotation(double mode, const std::string& name);
   void Picture(const std::string& name, const std::string& file, double last_s = 0);

@@ -152,6 +152,15 @@ void AddFigure2(const Json& measured, Claims* claims) {
                             100 * (to / from - 1)),
                 to > from ? "yes" : "no");
   }
+  if (const Json& t = At(measured, "tradeoff"); t.is_object()) {
+    const double alone = t.at("last_stability").at(0), sum = t.at("last_stability").at(1);
+    claims->Add(
+        "Fig. 2: the linear sum trades manipulability for stability (little finger)",
+        fmt::format("stability {:.3f} at the start; {:.3f} at the end with manipulability alone, "
+                    "{:.3f} with the sum",
+                    t.at("first_stability").get<double>(), alone, sum),
+        sum > alone ? "yes" : "no");
+  }
   const int runs = measured.at("repeats").at("runs"), rose = measured["repeats"].at("rose");
   claims->Add(
       "“Repeating the exploratory motion 50 times using different initial gradient "
@@ -289,6 +298,10 @@ std::string ReproductionPage(const PaperResults& r) {
   text +=
       picture("figure1.png", "Figure 1: the hand holds the sphere; arrows are true contact forces");
   text += picture("figure2.png", "Figure 2: the ring finger explores, two criteria, one start");
+  if (r.figures.contains("tradeoff"))
+    text += picture("figure2-little.png",
+                    "Figure 2 of the little finger: what it gains in manipulability costs "
+                    "stability, and the sum keeps more of it");
   text +=
       picture("figure3a.png", "Figure 3a: contact points in the object's frame, fingers exploring");
   text += picture("figure3b.png", "Figure 3b: the gait, fingers exploring");
