@@ -530,7 +530,7 @@ int Move(const Options& o) {
         continue;
       }
       lost += r[6] == 0;
-      on_way.push_back(std::max(r[4], r[5]));
+      on_way.push_back(r[5]);
       way.push_back(100 * r[7]);
       const auto end = static_cast<MoveEnd>(static_cast<int>(r[0]));
       if (end == MoveEnd::kReached) {

@@ -118,7 +118,8 @@ void FingerGait::StartMotion(const GaitParameters& parameters) {
   const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
   ObjectMotion per_rad;
   per_rad.w_W = sign_ * request_.axis_W;
-  manipulation_.Start(per_rad, step, speed, parameters.acceleration);
+  manipulation_.Start(per_rad, step, speed, parameters.acceleration,
+                      LocalManipulation::AtLimit::kEnds);
   Enter(GaitPhase::kObjectMotion);
 }
 

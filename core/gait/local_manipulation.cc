@@ -6,6 +6,7 @@ namespace regrasp {
 namespace {
 
 constexpr double kStuck_s = 0.5;
+constexpr double kStuckYielding_s = 1.0;  // a finger that begins to slip takes its time
 constexpr double kMovesTurning = 0.3;    // rad per rad of the object
 constexpr double kMovesShifting = 12.0;  // rad per m of the object: the same at 25 mm from its axis
 constexpr double kThereTurning = 1e-4;   // rad
@@ -37,18 +38,20 @@ std::string_view Name(LocalManipulation::End end) {
 }
 
 void LocalManipulation::Start(const ObjectMotion& per_path, double length, double speed,
-                              double acceleration) {
+                              double acceleration, AtLimit policy) {
   *this = LocalManipulation();
   per_path_ = per_path;
   length_ = length;
   speed_max_ = speed;
   acceleration_ = acceleration;
+  policy_ = policy;
 }
 
 LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const Estimate& estimate,
                                                   const Home& home, unsigned fingers,
                                                   double margin,
                                                   const GaitParameters& parameters) {
+  limited_finger_ = -1;
   // A joint that moves less than this, per unit of path, may stand at its limit.
   const double least_rate =
       (turns() ? kMovesTurning : 0.0) + kMovesShifting * per_path_.v_W.norm();
@@ -69,8 +72,12 @@ LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const E
           (q < joint.lower + parameters.limit_margin && rate < -least_rate))
         limited = true;
     }
-    if (travelled_ == 0 && limited) at_limit_at_first_ |= 1u << i;
-    if (limited && !(at_limit_at_first_ >> i & 1u)) return End::kJointLimit;
+    if (limited) {
+      limited_finger_ = i;
+      at_limit_ |= 1u << i;
+      if (travelled_ == 0) at_limit_at_first_ |= 1u << i;
+      if (policy_ == AtLimit::kEnds && !(at_limit_at_first_ >> i & 1u)) return End::kJointLimit;
+    }
     if (f.manipulability < parameters.min_manipulability * home.manipulability[i])
       return End::kManipulability;
     const Vector3d excursion = f.p_WC - home.p_WO - home.p_OC[i];
@@ -86,6 +93,7 @@ ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& es
                                        const GaitParameters& parameters, double dt) {
   ObjectMotion motion;
   if (end_ != End::kNone) return motion;
+  const End found = FindEnd(hand, estimate, home, fingers, margin, parameters);
   const double left = length_ - travelled_;
   const double e_p = (wrench.p_ref() - estimate.p_WO).norm();
   const double e_r = RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
@@ -96,7 +104,6 @@ ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& es
   const double change = acceleration_ * dt;
   speed_ = std::clamp(wanted, speed_ - change, speed_ + change);
   speed_ = std::min(std::max(speed_, 0.0), left / dt);
-  const End found = FindEnd(hand, estimate, home, fingers, margin, parameters);
   travelled_ += speed_ * dt;
   motion.v_W = speed_ * per_path_.v_W;
   motion.w_W = speed_ * per_path_.w_W;
@@ -107,7 +114,12 @@ ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& es
   } else if (stop_ && speed_ <= 0) {
     end_ = End::kStopped;
   } else {
-    end_ = waited_ * dt > kStuck_s ? End::kStuck : found;
+    const double patience = policy_ == AtLimit::kYields ? kStuckYielding_s : kStuck_s;
+    end_ = waited_ * dt > patience ? End::kStuck : found;
+    if (end_ == End::kStuck && policy_ == AtLimit::kYields && limited_finger_ >= 0) {
+      end_ = End::kJointLimit;
+      end_finger_ = limited_finger_;
+    }
   }
   return motion;
 }
@@ -120,6 +132,8 @@ void LocalManipulation::AddTo(StateHasher* hasher) const {
   hasher->Add(acceleration_);
   hasher->Add(travelled_);
   hasher->Add(speed_);
+  hasher->Add(policy_);
+  hasher->Add(at_limit_);
   hasher->Add(stop_);
   hasher->Add(at_limit_at_first_);
   hasher->Add(waited_);

@@ -18,11 +18,17 @@ class LocalManipulation {
     kNone,            ///< still moving
     kReached,         ///< where it should
     kJointLimit,      ///< a joint has come to its limit and would have to go on
-    kStuck,           ///< the object has not followed its reference for some time
+    kStuck,           ///< the object has not followed its reference for some time, no joint is why
     kManipulability,  ///< a finger is near a singular posture
     kExcursion,       ///< a contact is too far from its first place
     kMargin,          ///< the grasp could hardly carry more
     kStopped,
+  };
+
+  /// What it means that a joint has come to its limit and would have to go on.
+  enum class AtLimit : std::uint8_t {
+    kEnds,    ///< the motion ends
+    kYields,  ///< its finger shall roll and slip; the motion ends when the object follows no more
   };
 
   /// What the grasp looked like at first; the ends are judged against it.
@@ -36,7 +42,8 @@ class LocalManipulation {
   /// velocity per speed along the path. A turn: length in rad, w_W the unit axis through the
   /// object's centre. A shift: length in m, w_W zero, v_W a unit vector. Both at once: length in
   /// rad, w_W the unit axis, v_W in m/rad. `speed`, `acceleration`: along the path, > 0.
-  void Start(const ObjectMotion& per_path, double length, double speed, double acceleration);
+  void Start(const ObjectMotion& per_path, double length, double speed, double acceleration,
+             AtLimit policy);
   /// Slows down and ends with kStopped.
   void Stop() { stop_ = true; }
   /// One tick: the motion of the object reference. `fingers`: bits of the holding fingers;
@@ -47,6 +54,8 @@ class LocalManipulation {
 
   End end() const { return end_; }
   int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
+  /// Bits of the fingers that have had a joint at a limit against which they would have moved.
+  unsigned at_limit() const { return at_limit_; }
   double length() const { return length_; }        ///< of the path [rad, or m for a shift]
   double travelled() const { return travelled_; }  ///< by the reference since Start, same unit
   double speed() const { return speed_; }          ///< along the path [1/s]
@@ -60,7 +69,10 @@ class LocalManipulation {
   ObjectMotion per_path_;
   double length_ = 0, speed_max_ = 0, acceleration_ = 0;
   double travelled_ = 0, speed_ = 0;
+  AtLimit policy_ = AtLimit::kEnds;
   bool stop_ = false;
+  unsigned at_limit_ = 0;
+  int limited_finger_ = -1;  // in this tick
   unsigned at_limit_at_first_ =
       0;            // bits of the fingers with a joint at its limit when the motion began
   int waited_ = 0;  // ticks

@@ -6,6 +6,7 @@ namespace regrasp {
 namespace {
 
 constexpr double kMarginFilter_s = 0.05;
+constexpr double kYieldingCap = 2.0;  // of the preferred force of a finger that shall slip
 constexpr double kRest_s = 0.4;  // until the object has caught up with its reference
 
 }  // namespace
@@ -29,25 +30,40 @@ void ObjectMove::Start(const Request& request, const HandModel& hand, const Esti
   // The ramp takes as long as that of a turn at full speed.
   const double acceleration = speed * parameters.acceleration / parameters.speed_rad_s;
   manipulation_.Start({request.offset_W / length, request.rotation_W / length}, length, speed,
-                      acceleration);
+                      acceleration, LocalManipulation::AtLimit::kYields);
 }
 
-ObjectMotion ObjectMove::Update(const HandModel& hand, const Estimate& estimate,
-                                const ObjectWrench& wrench, double margin,
+ObjectMotion ObjectMove::Update(const HandModel& hand, const Estimate& estimate, double margin,
+                                const std::array<double, kMaxFingers>& margin_without,
                                 const ControlParameters& control, const GaitParameters& parameters,
-                                double dt, FingerTasks* tasks) {
-  margin_ += (have_margin_ ? dt / (kMarginFilter_s + dt) : 1.0) * (margin - margin_);
-  have_margin_ = true;
+                                double dt, HybridController* controller, FingerTasks* tasks) {
+  const double gain = have_margins_ ? dt / (kMarginFilter_s + dt) : 1.0;
+  have_margins_ = true;
+  margin_ += gain * (margin - margin_);
+  for (std::size_t i = 0; i < margin_without.size(); ++i)
+    margin_without_[i] += gain * (margin_without[i] - margin_without_[i]);
+
   for (int i = 0; i < hand.num_fingers(); ++i) {
     if (!(fingers_ >> i & 1u)) continue;
+    const bool yields =
+        (manipulation_.at_limit() >> i & 1u) && margin_without_[i] >= parameters.margin_min;
     FingerTask& task = (*tasks)[i];
     task.mode = FingerMode::kHold;
-    task.cap = control.max_normal_force;
-    task.grip = parameters.grip_force;
+    task.cap = yields ? kYieldingCap * parameters.slide_force : control.max_normal_force;
+    task.grip = yields ? parameters.slide_force : parameters.grip_force;
   }
-  if (manipulation_.end() != LocalManipulation::End::kNone)
+
+  using End = LocalManipulation::End;
+  if (manipulation_.end() != End::kNone) {
     active_ = ++rest_ticks_ * dt < kRest_s;
-  return manipulation_.Update(hand, estimate, wrench, home_, fingers_, margin_, parameters, dt);
+    return {};
+  }
+  const ObjectMotion motion = manipulation_.Update(hand, estimate, controller->wrench(), home_,
+                                                   fingers_, margin_, parameters, dt);
+  const End end = manipulation_.end();
+  if (end == End::kNone || end == End::kReached) return motion;
+  controller->wrench().SetReference(estimate.p_WO, estimate.q_WO);
+  return {};
 }
 
 void ObjectMove::AddTo(StateHasher* hasher) const {
@@ -58,6 +74,7 @@ void ObjectMove::AddTo(StateHasher* hasher) const {
   for (const Vector3d& p_OC : home_.p_OC) hasher->Add(p_OC);
   for (double manipulability : home_.manipulability) hasher->Add(manipulability);
   hasher->Add(margin_);
+  for (double margin : margin_without_) hasher->Add(margin);
   hasher->Add(rest_ticks_);
   manipulation_.AddTo(hasher);
 }

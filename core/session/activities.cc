@@ -206,9 +206,9 @@ void Session::Impl::StartMove(const Command& command) {
 }
 
 void Session::Impl::UpdateMove() {
-  motion = move.Update(hand, estimator.estimate(), controller.wrench(),
-                       monitor.stability().load_margin, parameters.control, parameters.gait, dt,
-                       &tasks);
+  const FingerGait::Margins margins = Margins();
+  motion = move.Update(hand, estimator.estimate(), margins.all, margins.without, parameters.control,
+                       parameters.gait, dt, &controller, &tasks);
   JudgeMove();
   if (move.active()) return;
   FinishJob(job.move.end == MoveEnd::kStopped ? JobState::kCancelled : JobState::kDone, "");
