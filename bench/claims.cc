@@ -38,7 +38,8 @@ struct Options {
                     estimator = "least_squares", finger;
   int seeds = 5, jobs = 2, iterations = 0;
   std::uint64_t first = 1;
-  double seconds = 60, warm = -1, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0, offset_mm = 0;
+  double seconds = 60, warm = -1, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0,
+         offset_mm = 0;
   std::string axis = "0,0,-1";
   bool exact = false, rows = false, exploring = false;
   std::vector<std::pair<std::string, double>> set;

@@ -126,11 +126,12 @@ Outcome Move(Service& service, const Params& params, Client&) {
   const auto check = [](const char* name, double length, double most, const char* unit) {
     // What is written in decimals may be longer by its rounding.
     if (length <= most * (1 + 1e-9)) return;
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                fmt::format("{} of length {:.6g} {} is too long", name, length, unit),
-                                fmt::format("allowed: at most {:.6g} {}", most, unit),
-                                name,
-                                {}});
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams,
+                 fmt::format("{} of length {:.6g} {} is too long", name, length, unit),
+                 fmt::format("allowed: at most {:.6g} {}", most, unit),
+                 name,
+                 {}});
   };
   check("offset_m", command.offset_W.norm(), kMaxMoveOffset, "m");
   check("rotation_rad", command.rotation_W.norm(), std::numbers::pi, "rad");

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kStuck_s = 0.5;
 constexpr double kStuckYielding_s = 1.0;  // a finger that begins to slip takes its time
-constexpr double kMovesTurning = 0.3;    // rad per rad of the object
+constexpr double kMovesTurning = 0.3;     // rad per rad of the object
 constexpr double kMovesShifting = 12.0;  // rad per m of the object: the same at 25 mm from its axis
 constexpr double kThereTurning = 1e-4;   // rad
 constexpr double kThereShifting = 1e-5;  // m
@@ -48,13 +48,11 @@ void LocalManipulation::Start(const ObjectMotion& per_path, double length, doubl
 }
 
 LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const Estimate& estimate,
-                                                  const Home& home, unsigned fingers,
-                                                  double margin,
+                                                  const Home& home, unsigned fingers, double margin,
                                                   const GaitParameters& parameters) {
   limited_finger_ = -1;
   // A joint that moves less than this, per unit of path, may stand at its limit.
-  const double least_rate =
-      (turns() ? kMovesTurning : 0.0) + kMovesShifting * per_path_.v_W.norm();
+  const double least_rate = (turns() ? kMovesTurning : 0.0) + kMovesShifting * per_path_.v_W.norm();
   for (int i = 0; i < hand.num_fingers(); ++i) {
     if (!(fingers >> i & 1u)) continue;
     const FingerEstimate& f = estimate.fingers[i];

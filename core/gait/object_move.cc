@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMarginFilter_s = 0.05;
 constexpr double kYieldingCap = 2.0;  // of the preferred force of a finger that shall slip
-constexpr double kRest_s = 0.4;  // until the object has caught up with its reference
+constexpr double kRest_s = 0.4;       // until the object has caught up with its reference
 
 }  // namespace
 

@@ -1,9 +1,9 @@
 #pragma once
 
 /// One local manipulation on its own: all fingers hold, and the object moves a little along and
-/// about any axis without a regrasp, as far as the fingers reach. A finger with a joint at its limit
-/// presses lightly, so that it rolls and slips, as long as the grasp without it has load margin
-/// enough (gait.margin_min).
+/// about any axis without a regrasp, as far as the fingers reach. A finger with a joint at its
+/// limit presses lightly, so that it rolls and slips, as long as the grasp without it has load
+/// margin enough (gait.margin_min).
 
 #include "core/gait/local_manipulation.h"
 

@@ -340,8 +340,8 @@ constexpr std::array kMethods = {
     MethodSpec{
         "joints", "joints", "joint angles, rates and torques", kNone, false,
         "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
-    MethodSpec{"move", "move", "move the object a little with all fingers, without a regrasp", kMove,
-               true, "job"},
+    MethodSpec{"move", "move", "move the object a little with all fingers, without a regrasp",
+               kMove, true, "job"},
     MethodSpec{"noise.get", "noise show", "noise levels of the sensors", kNone, false,
                "preset and every level"},
     MethodSpec{"noise.set", "noise set", "change noise levels", kNoiseSet, false,

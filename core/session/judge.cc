@@ -131,9 +131,8 @@ void Session::Impl::JudgeMove() {
   r.achieved_offset_m = truth.p_WO - p_WO_start;
   r.achieved_rotation_rad = RotationVector(truth.q_WO * q_WO_start.conjugate());
   r.max_position_error_m = std::max(r.max_position_error_m, (truth.p_WO - wrench.p_ref()).norm());
-  r.max_rotation_error_rad =
-      std::max(r.max_rotation_error_rad,
-               RotationVector(wrench.q_ref() * truth.q_WO.conjugate()).norm());
+  r.max_rotation_error_rad = std::max(
+      r.max_rotation_error_rad, RotationVector(wrench.q_ref() * truth.q_WO.conjugate()).norm());
   r.end = MoveEndOf(move.manipulation().end());
   r.reached = r.end == MoveEnd::kReached;
   const bool of_finger = r.end == MoveEnd::kJointLimit || r.end == MoveEnd::kManipulability ||

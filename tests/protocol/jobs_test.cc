@@ -190,8 +190,8 @@ TEST_F(Jobs, AMovesRecordIsComplete) {
   EXPECT_EQ(record["offset_m"], Json({0, 0, 0.003}));
   EXPECT_EQ(record["rotation_rad"], Json({0, 0, 0}));
   EXPECT_NEAR(record["achieved_offset_m"][2].get<double>(), 0.003, 1e-3);
-  for (const char* field : {"achieved_rotation_rad", "max_position_error_m",
-                            "max_rotation_error_rad", "sim_time_s"})
+  for (const char* field :
+       {"achieved_rotation_rad", "max_position_error_m", "max_rotation_error_rad", "sim_time_s"})
     EXPECT_TRUE(record.contains(field)) << field;
 }
 

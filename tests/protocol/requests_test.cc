@@ -38,7 +38,7 @@ TEST_F(Requests, AnswerWithTheRightCode) {
        -32602},  // a double would round it
       {"explore", {{"finger", "ring"}, {"max_cycles", 0}}, -32602},
       {"explore", {{"finger", "ring"}, {"criterion", "best"}}, -32602},
-      {"explore", {{"finger", "ring"}}, -32002},  // nothing is held
+      {"explore", {{"finger", "ring"}}, -32002},        // nothing is held
       {"move", {{"offset_m", {0, 0, 0.005}}}, -32002},  // nothing is held
       {"move", {{"rotation_rad", {0, 0, 0.1}}}, -32002},
       {"move", {}, -32602},

@@ -52,9 +52,8 @@ TEST(JournalText, EveryCommandComesBack) {
   std::size_t seq = 0;
   for (const CommandType type :
        {CommandType::kGrasp, CommandType::kRelease, CommandType::kExplore, CommandType::kRotate,
-        CommandType::kMove,
-        CommandType::kStop, CommandType::kNoise, CommandType::kPush, CommandType::kParameter,
-        CommandType::kCancelJob, CommandType::kBranch}) {
+        CommandType::kMove, CommandType::kStop, CommandType::kNoise, CommandType::kPush,
+        CommandType::kParameter, CommandType::kCancelJob, CommandType::kBranch}) {
     JournalEntry entry;
     entry.tick = 12345;
     entry.state_hash = 0x00ab;
