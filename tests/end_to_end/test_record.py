@@ -104,8 +104,8 @@ class Runs(DaemonCase):
         found = self.json("replay", path)
         self.assertFalse(found["complete"])
         self.assertTrue(found["identical"])
-        self.assertEqual(found["commands"], 7)
-        self.assertGreaterEqual(found["ticks"], 4600)  # the last command, at the least
+        self.assertEqual(found["commands"], 9)
+        self.assertGreaterEqual(found["ticks"], 6200)  # the last command, at the least
         self.public_reader(path, complete=False, killed=True)
         self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "mended.mcap")
         self.assertTrue(self.json("replay", self.dir / "mended.mcap")["complete"])
@@ -116,7 +116,7 @@ class Runs(DaemonCase):
         messages = self.json("record", "stop")["messages"]
         counts = self.public_reader(path, complete=True)
         self.assertEqual(sum(stream for stream, _ in counts.values()), messages)
-        self.assertEqual(counts["commands"][0], 7)
+        self.assertEqual(counts["commands"][0], 9)
 
     def public_reader(self, path, complete, killed=False):
         """Reads `path` with @mcap/core; every message by stream, and by index when the file is complete."""
