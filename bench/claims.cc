@@ -5,6 +5,8 @@
 //   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
 //   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all]
 //                    [--speed DEG_S] [--explore] [--push N]  a push of so much for 0.1 s a second
+//   claims move      [--seeds N] [--first S] [--angle DEG] [--offset MM] [--axis X,Y,Z | all]
+//                    one motion about and along the axis, without a regrasp
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
 // Common: --noise PRESET --object NAME --tilt DEG (of the palm) --set NAME=VALUE (repeatable)
 // --exact --rows (a line per trial). Trials run in two processes (--jobs N); each is reproducible
@@ -36,7 +38,8 @@ struct Options {
                     estimator = "least_squares", finger;
   int seeds = 5, jobs = 2, iterations = 0;
   std::uint64_t first = 1;
-  double seconds = 60, warm = -1, turns = 1, speed = 0, tilt = -1, push = 0;
+  double seconds = 60, warm = -1, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0,
+         offset_mm = 0;
   std::string axis = "0,0,-1";
   bool exact = false, rows = false, exploring = false;
   std::vector<std::pair<std::string, double>> set;
@@ -399,20 +402,21 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
           stability_after};
 }
 
-int Rotate(const Options& o) {
-  std::vector<std::pair<std::string, Vector3d>> axes;
-  if (o.axis == "all") {
-    axes = {{"+x", {1, 0, 0}},  {"-x", {-1, 0, 0}}, {"+y", {0, 1, 0}},
+/// The axes of --axis by name; ends the program where it is wrong.
+std::vector<std::pair<std::string, Vector3d>> Axes(const Options& o) {
+  if (o.axis == "all")
+    return {{"+x", {1, 0, 0}},  {"-x", {-1, 0, 0}}, {"+y", {0, 1, 0}},
             {"-y", {0, -1, 0}}, {"+z", {0, 0, 1}},  {"-z", {0, 0, -1}}};
-  } else {
-    Vector3d a;
-    if (std::sscanf(o.axis.c_str(), "%lf,%lf,%lf", &a[0], &a[1], &a[2]) != 3 || a.norm() == 0) {
-      std::fprintf(stderr, "claims: --axis wants X,Y,Z or all\n");
-      return 2;
-    }
-    axes = {{o.axis, a.normalized()}};
+  Vector3d a;
+  if (std::sscanf(o.axis.c_str(), "%lf,%lf,%lf", &a[0], &a[1], &a[2]) != 3 || a.norm() == 0) {
+    std::fprintf(stderr, "claims: --axis wants X,Y,Z or all\n");
+    std::exit(2);
   }
-  for (const auto& [label, axis] : axes) {
+  return {{o.axis, a.normalized()}};
+}
+
+int Rotate(const Options& o) {
+  for (const auto& [label, axis] : Axes(o)) {
     const auto rows = Parallel(o.seeds, o.jobs, [&, a = axis](int k) {
       Session session(MakeConfig(o, o.first + k, o.object));
       return RotateTrial(session, o, a, o.first + k);
@@ -474,6 +478,110 @@ int Rotate(const Options& o) {
   return 0;
 }
 
+/// The joint of `finger` that is nearest to a limit, by its index in the hand; -1 for no finger.
+int NearestToLimit(const Session& session, int finger) {
+  const HandModel& hand = session.config().model.hand;
+  int nearest = -1;
+  double least = 1e9;
+  if (finger < 0) return -1;
+  for (int j : hand.fingers[finger].joints) {
+    const double q = session.truth().q[j];
+    const double left = std::min(q - hand.joints[j].lower, hand.joints[j].upper - q);
+    if (left < least) nearest = j;
+    least = std::min(least, left);
+  }
+  return nearest;
+}
+
+/// {end, finger, joint nearest to its limit, angle error deg, position error at the end mm, largest
+/// on the way mm, still held a second later, share of the way, largest angle error on the way deg}.
+/// Errors are against what was wanted and, on the way, against the reference.
+Row MoveTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
+  if (!Grasp(session)) return {kFailed};
+  Command c;
+  c.type = CommandType::kMove;
+  c.offset_W = o.offset_mm * 1e-3 * axis;
+  c.rotation_W = o.angle * M_PI / 180 * axis;
+  const JobRecord job = RunJob(session, c, 120);
+  const MoveResult& r = job.move;
+  const int joint = NearestToLimit(session, r.end_finger);
+  for (int t = 0; t < 1000; ++t) session.Tick();
+  const double angle_error = RotationVector(FromRotationVector(r.achieved_rotation_rad) *
+                                            FromRotationVector(c.rotation_W).conjugate())
+                                 .norm() *
+                             180 / M_PI;
+  const double along = o.angle != 0 ? r.achieved_rotation_rad.dot(axis) * 180 / M_PI / o.angle
+                                    : r.achieved_offset_m.dot(axis) * 1e3 / o.offset_mm;
+  const double position_error = (r.achieved_offset_m - c.offset_W).norm() * 1e3;
+  const bool held = session.state() == SessionState::kHolding;
+  if (o.rows)
+    std::fprintf(stderr,
+                 "  seed %llu %s %s %s  %.0f %% of the way  angle error %.2f deg  position error "
+                 "%.2f mm (on the way %.2f mm, %.1f deg)  %s  %s\n",
+                 static_cast<unsigned long long>(seed), Name(job.state).data(), Name(r.end).data(),
+                 joint < 0 ? "" : session.config().model.hand.joints[joint].name.c_str(),
+                 100 * along, angle_error, position_error, r.max_position_error_m * 1e3,
+                 r.max_rotation_error_rad * 180 / M_PI, held ? "held" : "NOT HELD", job.error);
+  return {static_cast<double>(r.end),
+          static_cast<double>(r.end_finger),
+          static_cast<double>(joint),
+          angle_error,
+          position_error,
+          r.max_position_error_m * 1e3,
+          held ? 1.0 : 0.0,
+          along,
+          r.max_rotation_error_rad * 180 / M_PI};
+}
+
+int Move(const Options& o) {
+  if (o.angle == 0 && o.offset_mm == 0) {
+    std::fprintf(stderr, "claims: move wants --angle or --offset\n");
+    return 2;
+  }
+  const HandModel hand = MakeConfig(o, 1, o.object).model.hand;
+  for (const auto& [label, axis] : Axes(o)) {
+    const auto rows = Parallel(o.seeds, o.jobs, [&, a = axis](int k) {
+      Session session(MakeConfig(o, o.first + k, o.object));
+      return MoveTrial(session, o, a, o.first + k);
+    });
+    int reached = 0, failed = 0, lost = 0, within = 0;
+    std::vector<double> angle, position, on_way, way;
+    std::map<std::string, int> ends;
+    for (const Row& r : rows) {
+      if (r.empty() || r[0] == kFailed) {
+        ++failed;
+        continue;
+      }
+      lost += r[6] == 0;
+      on_way.push_back(r[5]);
+      way.push_back(100 * r[7]);
+      const auto end = static_cast<MoveEnd>(static_cast<int>(r[0]));
+      if (end == MoveEnd::kReached) {
+        ++reached;
+        within += r[3] < 5 && std::max(r[4], r[5]) < 4;
+        angle.push_back(r[3]);
+        position.push_back(r[4]);
+        continue;
+      }
+      std::string what(Name(end));
+      if (r[1] >= 0) what += " of " + hand.fingers[static_cast<std::size_t>(r[1])].name;
+      if (end == MoveEnd::kJointLimit && r[2] >= 0)
+        what += " (" + hand.joints[static_cast<std::size_t>(r[2])].name + ")";
+      ++ends[what];
+    }
+    std::printf(
+        "%-8s %.3g deg %.3g mm  reached %2d/%-2zu  of these within 5 deg and 4 mm %d  lost %d  not "
+        "grasped %d  angle error max %.1f mean %.1f deg  position error max %.2f mean %.2f mm, of "
+        "all on the way %.2f mm  way mean %.0f %%",
+        label.c_str(), o.angle, o.offset_mm, reached, rows.size(), within, lost, failed, Max(angle),
+        Mean(angle), Max(position), Mean(position), Max(on_way), Mean(way));
+    for (const auto& [what, n] : ends) std::printf("\n         ended by %s: %d", what.c_str(), n);
+    std::printf("\n");
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
 int Repeat(const Options& o) {
   std::uint64_t hash[2];
   for (std::uint64_t& h : hash) {
@@ -524,7 +632,9 @@ int main(int argc, char** argv) {
     else if (a == "--turns")
       o.turns = std::stod(next());
     else if (a == "--angle")
-      o.turns = std::stod(next()) / 360;
+      o.turns = (o.angle = std::stod(next())) / 360;
+    else if (a == "--offset")
+      o.offset_mm = std::stod(next());
     else if (a == "--explore") {
       o.exploring = true;
       o.set.emplace_back("gait.mode", 0);
@@ -559,9 +669,10 @@ int main(int argc, char** argv) {
   if (o.what == "objects") return Objects(o);
   if (o.what == "explore") return Explore(o);
   if (o.what == "rotate") return Rotate(o);
+  if (o.what == "move") return Move(o);
   if (o.what == "repeat") return Repeat(o);
   std::fprintf(stderr,
-               "usage: claims hold|objects|explore|rotate|repeat [options]; see the head of "
+               "usage: claims hold|objects|explore|rotate|move|repeat [options]; see the head of "
                "bench/claims.cc\n");
   return 2;
 }

@@ -28,6 +28,14 @@ ExitCode Rotate(Context& context, const Invocation& invocation) {
   return StartJob(context, invocation);
 }
 
+ExitCode Move(Context& context, const Invocation& invocation) {
+  if (invocation.params.empty()) {
+    throw CliError(kUsage, "move takes --by (mm), --turn (degrees) or both, not none",
+                   "regrasp move --by 0,0,5 --wait");
+  }
+  return StartJob(context, invocation);
+}
+
 ExitCode Stop(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
@@ -161,10 +169,16 @@ std::vector<CommandSpec> ControlCommands() {
       MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
   param_get.args.front().required = true;
   param_get.sentence = "value, unit, range and source of a parameter";
+  CommandSpec move = MethodCommand("move", kGroup, Move);
+  move.args[0].flags = "--by";
+  move.args[0].help = "shift of the object's centre along the axes of W, in mm, at most 50 long";
+  move.args[1].flags = "--turn";
+  move.args[1].help = "turn, a rotation vector in W, in degrees, at most 180 long";
   return {
       MethodCommand("grasp", kGroup, StartJob),
       MethodCommand("release", kGroup, StartJob),
       MethodCommand("rotate", kGroup, Rotate),
+      move,
       MethodCommand("explore", kGroup, StartJob, {.positional = {"finger"}}),
       MethodCommand("stop", kGroup, Stop),
       MethodCommand("pause", kGroup, PauseOrResume),

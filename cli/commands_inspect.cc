@@ -203,6 +203,7 @@ ExitCode JobList(Context& context, const Invocation& invocation) {
     for (const auto& job : jobs) {
       std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
       if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
+      if (At(job, "end").is_string()) result = Plain(At(job, "end"));
       if (At(job, "angle_rad").is_number())
         result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
       const auto tick = [&](const char* key) {

@@ -22,6 +22,8 @@ constexpr Example kExamples[] = {
     {"rotate", "regrasp rotate --angle 90 --wait", "a quarter turn about the vertical"},
     {"rotate", "regrasp rotate --turns 1 --axis 0,0,-1 --wait", "once round, the other way"},
     {"rotate", "regrasp rotate --continuous", "until regrasp stop"},
+    {"move", "regrasp move --by 0,0,5 --wait", "5 mm along z, without a regrasp"},
+    {"move", "regrasp move --by 2,0,0 --turn 0,0,-15 --wait", "a shift and a turn at once"},
     {"explore", "regrasp explore ring --wait", "until its grasp gets no better"},
     {"explore", "regrasp explore middle --criterion switched --seed 3 --max-cycles 2000 --wait", "switched measures, another start"},
     {"stop", "regrasp stop", "end what goes on, keep holding"},

@@ -67,7 +67,10 @@ Arg FromParam(const ParamSpec& param, bool positional) {
   }
   arg.values.assign(param.values.begin(), param.values.end());
   if (arg.metavar.empty()) arg.metavar = arg.kind == ArgKind::kVector3 ? "X,Y,Z" : "N";
-  if (arg.kind == ArgKind::kVector3) arg.metavar = "X,Y,Z";
+  if (arg.kind == ArgKind::kVector3) {
+    if (arg.scale != 1) arg.unit = arg.metavar;
+    arg.metavar = "X,Y,Z";
+  }
   if (arg.kind == ArgKind::kText || positional) {
     arg.metavar = name;
     std::transform(name.begin(), name.end(), arg.metavar.begin(), [](char c) {

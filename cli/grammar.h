@@ -24,9 +24,10 @@ enum class ArgKind { kFlag, kText, kNumber, kInteger, kVector3, kNumberOrVector3
 
 /// One argument of a command.
 struct Arg {
-  std::string key;      ///< name on the wire, or a name of our own
-  std::string flags;    ///< "--angle", "-o,--output"; empty for a positional one
-  std::string metavar;  ///< "DEG", "FINGER"; empty for a flag
+  std::string key;        ///< name on the wire, or a name of our own
+  std::string flags;      ///< "--angle", "-o,--output"; empty for a positional one
+  std::string metavar;    ///< "DEG", "FINGER"; empty for a flag
+  std::string unit = {};  ///< of the numbers of a vector: "MM"; empty where the metavar names it
   ArgKind kind = ArgKind::kText;
   std::string help;
   double scale = 1;                      ///< value on the wire (SI) = typed value * scale

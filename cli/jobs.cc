@@ -82,12 +82,38 @@ void PrintRotate(Output& out, const Json& r) {
                        Fixed(At(r, "max_tilt_rad"), 1, kDegrees), out.Degree()));
 }
 
+void PrintMove(Output& out, const Json& r) {
+  out.Line(fmt::format("  shift      {} mm of {} mm", Vector(At(r, "achieved_offset_m"), 2, 1e3),
+                       Vector(At(r, "offset_m"), 2, 1e3)));
+  out.Line(fmt::format("  turn       {}{} of {}{}",
+                       Vector(At(r, "achieved_rotation_rad"), 1, kDegrees), out.Degree(),
+                       Vector(At(r, "rotation_rad"), 1, kDegrees), out.Degree()));
+  out.Line(fmt::format("  error      at most {} mm, {}{}, in {} s",
+                       Fixed(At(r, "max_position_error_m"), 1, 1e3),
+                       Fixed(At(r, "max_rotation_error_rad"), 1, kDegrees), out.Degree(),
+                       Fixed(At(r, "sim_time_s"), 1)));
+}
+
+/// What became of a move that is done: "done, reached", "ended at a joint limit of middle".
+std::string MoveVerdict(const Json& r) {
+  const std::string end = Plain(At(r, "end")), finger = Plain(At(r, "end_finger"));
+  if (end == "reached") return "done, reached";
+  if (end == "joint_limit") return "ended at a joint limit of " + finger;
+  if (end == "manipulability") return "ended, " + finger + " is near a singular posture";
+  if (end == "excursion") return "ended, " + finger + " is too far from its first place";
+  if (end == "load_margin") return "ended, the load margin is too small";
+  if (end == "object_stuck") return "ended, the object does not follow";
+  return "ended: " + end;
+}
+
 }  // namespace
 
 ExitCode JobExit(const Json& record) {
   const std::string state = record.value("state", "");
   if (state == "failed" || state == "cancelled") return kFailed;
-  if (At(record, "converged") == false || At(record, "dropped") == true) return kFailed;
+  if (At(record, "converged") == false || At(record, "dropped") == true ||
+      At(record, "reached") == false)
+    return kFailed;
   return kOk;
 }
 
@@ -101,6 +127,8 @@ void PrintJob(Output& out, const Json& record) {
     verdict += fmt::format(" ({})", Plain(At(record, "reason")));
   } else if (state == "done" && At(record, "dropped") == true) {
     verdict = "dropped the object";
+  } else if (state == "done" && At(record, "reached").is_boolean()) {
+    verdict = MoveVerdict(record);
   } else if (!ended) {
     verdict += fmt::format(" {:.0f} %", 100 * record.value("progress", 0.0));
   }
@@ -118,6 +146,8 @@ void PrintJob(Output& out, const Json& record) {
     PrintExplore(out, record);
   if (ended && record.value("method", "") == "rotate" && At(record, "angle_rad").is_number())
     PrintRotate(out, record);
+  if (ended && record.value("method", "") == "move" && At(record, "end").is_string())
+    PrintMove(out, record);
   if (At(record, "start_tick").is_number()) {
     const std::string start = Plain(At(record, "start_tick"));
     out.Line(ended ? fmt::format("  ticks      {} to {}", start, Plain(At(record, "end_tick")))

@@ -59,8 +59,9 @@ void CheckRange(const Arg& arg, double typed) {
   // Half a rounding of the unit conversion: the limit itself, typed in degrees, is allowed.
   const double slack = 1e-12 * std::abs(value);
   if (value >= arg.min - slack && value <= arg.max + slack) return;
-  const std::string unit =
-      arg.scale == 1 && arg.metavar != "S" && arg.metavar != "HZ" ? "" : " " + arg.metavar;
+  const bool named =
+      !arg.unit.empty() || arg.scale != 1 || arg.metavar == "S" || arg.metavar == "HZ";
+  const std::string unit = named ? " " + (arg.unit.empty() ? arg.metavar : arg.unit) : "";
   throw CliError(kUsage, arg.max >= 1e299
                              ? fmt::format("{} {:g}: allowed are {:g}{} and more", ArgName(arg),
                                            typed, arg.min / arg.scale, unit)

@@ -143,7 +143,8 @@ void DrawObject(Screen* screen, const Box& box, const DashboardModel& model) {
   }
   std::string error;
   const std::string state = Plain(At(model.status(), "state"));
-  const bool held = state == "holding" || state == "exploring" || state == "rotating";
+  const bool held =
+      state == "holding" || state == "exploring" || state == "rotating" || state == "moving";
   const Json &is = At(object, "p_WO_m"), &wanted = At(object, "p_WO_reference_m");
   double distance = 0;
   if (held && is.is_array() && wanted.is_array() && is.size() == 3 && wanted.size() == 3) {

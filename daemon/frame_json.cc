@@ -244,6 +244,19 @@ Json JobJson(const JobRecord& job, const HandModel& hand) {
     json["max_tilt_rad"] = r.max_tilt_rad;
     json["sim_time_s"] = r.sim_time_s;
   }
+  if (job.method == JobMethod::kMove) {
+    const MoveResult& m = job.move;
+    json["offset_m"] = Vector(m.offset_m);
+    json["rotation_rad"] = Vector(m.rotation_rad);
+    json["achieved_offset_m"] = Vector(m.achieved_offset_m);
+    json["achieved_rotation_rad"] = Vector(m.achieved_rotation_rad);
+    json["reached"] = m.reached;
+    json["end"] = m.end == MoveEnd::kNone ? Json() : Json(Name(m.end));
+    json["end_finger"] = FingerName(hand, m.end_finger);
+    json["max_position_error_m"] = m.max_position_error_m;
+    json["max_rotation_error_rad"] = m.max_rotation_error_rad;
+    json["sim_time_s"] = m.sim_time_s;
+  }
   json["finished"] = ended;
   return json;
 }

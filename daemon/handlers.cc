@@ -26,6 +26,7 @@ constexpr std::array kHandlers = {
     Entry{"job.list", handlers::JobList},
     Entry{"job.wait", handlers::JobWait},
     Entry{"joints", handlers::Joints},
+    Entry{"move", handlers::Move},
     Entry{"noise.get", handlers::NoiseGet},
     Entry{"noise.set", handlers::NoiseSet},
     Entry{"param.get", handlers::ParamGet},

@@ -13,6 +13,7 @@ namespace handlers {
 // simulation.cc
 Outcome Explore(Service&, const Params&, Client&);
 Outcome Grasp(Service&, const Params&, Client&);
+Outcome Move(Service&, const Params&, Client&);
 Outcome NoiseGet(Service&, const Params&, Client&);
 Outcome NoiseSet(Service&, const Params&, Client&);
 Outcome ParamGet(Service&, const Params&, Client&);

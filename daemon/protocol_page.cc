@@ -95,7 +95,12 @@ std::string ProtocolPage() {
       "cycles, "
       "phi_initial, phi_final, phi_true_initial, phi_true_final, path_length_m`; the two "
       "`phi_true` are "
-      "noise-free, from the simulator, for judging only.\n\n";
+      "noise-free, from the simulator, for judging only. A `move` job adds `offset_m[3], "
+      "rotation_rad[3]` (wanted)`, achieved_offset_m[3], achieved_rotation_rad[3], reached, end` "
+      "(`reached`, `joint_limit`, `object_stuck`, `manipulability`, `excursion`, `load_margin`, "
+      "`stopped`, `dropped`; null while it moves)`, end_finger` (whose limit it was, or null)`, "
+      "max_position_error_m, max_rotation_error_rad` (object against its reference)`, sim_time_s`; "
+      "what was achieved and the errors are noise-free, too.\n\n";
   page +=
       "## Errors\n\n`{\"code\", \"message\", \"data\": {\"hint\", \"param\", \"allowed\"}}`\n\n"
       "| code | name | `regrasp` exits with | when |\n|---|---|---|---|\n";

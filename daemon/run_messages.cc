@@ -42,7 +42,8 @@ std::vector<Field> Fields(RunTopic topic) {
       return {kSegment,
               kTick,
               kTime,
-              {"state", "string", "idle, grasping, holding, exploring, rotating, dropped, faulted"},
+              {"state", "string",
+               "idle, grasping, holding, exploring, rotating, moving, dropped, faulted"},
               {"commands", "integer", "of the segment, applied before this state"},
               {"state_hash", "string", "of the whole simulation and controller"}};
     case RunTopic::kEvents:

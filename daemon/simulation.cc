@@ -113,6 +113,31 @@ Outcome Rotate(Service& service, const Params& params, Client&) {
   return StartJob(service, JobMethod::kRotate, std::move(command));
 }
 
+Outcome Move(Service& service, const Params& params, Client&) {
+  Command command = Of(CommandType::kMove);
+  command.offset_W = params.Vector("offset_m");
+  command.rotation_W = params.Vector("rotation_rad");
+  if (command.offset_W.isZero(0) && command.rotation_W.isZero(0))
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "an offset and a rotation of 0 leave nothing to move",
+                                "regrasp move --by 0,0,5 --wait",
+                                "offset_m",
+                                {}});
+  const auto check = [](const char* name, double length, double most, const char* unit) {
+    // What is written in decimals may be longer by its rounding.
+    if (length <= most * (1 + 1e-9)) return;
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams,
+                 fmt::format("{} of length {:.6g} {} is too long", name, length, unit),
+                 fmt::format("allowed: at most {:.6g} {}", most, unit),
+                 name,
+                 {}});
+  };
+  check("offset_m", command.offset_W.norm(), kMaxMoveOffset, "m");
+  check("rotation_rad", command.rotation_W.norm(), std::numbers::pi, "rad");
+  return StartJob(service, JobMethod::kMove, std::move(command));
+}
+
 Outcome Stop(Service& service, const Params&, Client&) {
   service.CheckAllowed(CommandType::kStop);
   const JobRecord* job = service.jobs().Unfinished();

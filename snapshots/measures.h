@@ -45,7 +45,7 @@ inline double SensedManipulability(const Frame& frame, int finger) {
 /// something.
 inline bool Holds(const Frame& frame) {
   return frame.state == SessionState::kHolding || frame.state == SessionState::kExploring ||
-         frame.state == SessionState::kRotating;
+         frame.state == SessionState::kRotating || frame.state == SessionState::kMoving;
 }
 
 /// The finger that explores, -1 for none.

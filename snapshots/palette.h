@@ -70,6 +70,8 @@ inline Colour StateColour(SessionState state) {
       return Tint(kOrange, 0.68);
     case SessionState::kRotating:
       return Tint(kGreen, 0.74);
+    case SessionState::kMoving:
+      return Tint(kPurple, 0.74);
     case SessionState::kDropped:
       return Tint(kVermillion, 0.45);
     case SessionState::kFaulted:

@@ -56,6 +56,7 @@ void FingerGait::Start(const Request& request, const HandModel& hand, const Esti
   sign_ = request.angle_rad < 0 ? -1.0 : 1.0;
   fingers_ = fingers;
   order_ = MakeGaitOrder(hand, estimate, fingers);
+  home_.p_WO = wrench.p_ref();
   for (int i = 0; i < hand.num_fingers(); ++i) {
     const FingerEstimate& f = estimate.fingers[i];
     home_.p_OC[i] = f.p_WC - wrench.p_ref();
@@ -115,16 +116,19 @@ void FingerGait::StartMotion(const GaitParameters& parameters) {
   const double step =
       request_.continuous ? parameters.step_rad : std::min(parameters.step_rad, left);
   const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
-  manipulation_.Start(sign_ * request_.axis_W, step, speed);
+  ObjectMotion per_rad;
+  per_rad.w_W = sign_ * request_.axis_W;
+  manipulation_.Start(per_rad, step, speed, parameters.acceleration,
+                      LocalManipulation::AtLimit::kEnds);
   Enter(GaitPhase::kObjectMotion);
 }
 
 void FingerGait::EndMotion() {
-  turned_before_ += manipulation_.turned();
-  turned_in_cycle_ = manipulation_.turned();
+  turned_before_ += manipulation_.travelled();
+  turned_in_cycle_ = manipulation_.travelled();
   if (const int finger = manipulation_.end_finger(); finger >= 0) {
     double& lead = lead_[finger];
-    lead = std::min(kMostLead, lead + 0.5 * (manipulation_.angle() - turned_in_cycle_));
+    lead = std::min(kMostLead, lead + 0.5 * (manipulation_.length() - turned_in_cycle_));
   }
   waiting_ = fingers_;
   refused_finger_ = -1;

@@ -85,7 +85,7 @@ class FingerGait {
  private:
   void Enter(GaitPhase phase);
   double manipulation_turned() const {
-    return phase_ == GaitPhase::kObjectMotion ? manipulation_.turned() : 0.0;
+    return phase_ == GaitPhase::kObjectMotion ? manipulation_.travelled() : 0.0;
   }
   void SearchStance(const Estimate& estimate, const Vector3d& weight,
                     const ControlParameters& control, const GaitParameters& parameters);

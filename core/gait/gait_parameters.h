@@ -16,6 +16,7 @@ struct GaitParameters {
   double hop = 1;      ///< 1: a finger hops to its target, 0: it slides
   // Object motion.
   double speed_rad_s = 0.3490658504;  ///< object speed during its motion phase (20 deg/s)
+  double move_speed = 0.010;          ///< object speed along a shift [m/s]
   double acceleration = 8.0;          ///< of that speed [rad/s²]
   double step_rad = 0.3490658504;     ///< object motion between regrasps (20 deg)
   double settle_s = 0.05;             ///< after it, before the first finger leaves

@@ -18,21 +18,32 @@ class LocalManipulation {
     kNone,            ///< still moving
     kReached,         ///< where it should
     kJointLimit,      ///< a joint has come to its limit and would have to go on
-    kStuck,           ///< the object has not followed its reference for some time
+    kStuck,           ///< the object has not followed its reference for some time, no joint is why
     kManipulability,  ///< a finger is near a singular posture
     kExcursion,       ///< a contact is too far from its first place
     kMargin,          ///< the grasp could hardly carry more
     kStopped,
   };
 
-  /// What the fingers looked like at first; the ends are judged against it.
+  /// What it means that a joint has come to its limit and would have to go on.
+  enum class AtLimit : std::uint8_t {
+    kEnds,    ///< the motion ends
+    kYields,  ///< its finger shall roll and slip; the motion ends when the object follows no more
+  };
+
+  /// What the grasp looked like at first; the ends are judged against it.
   struct Home {
-    std::array<Vector3d, kMaxFingers> p_OC{};  ///< contact from the object reference, in W axes [m]
+    Vector3d p_WO = Vector3d::Zero();          ///< object reference [m]
+    std::array<Vector3d, kMaxFingers> p_OC{};  ///< contact from that reference, in W axes [m]
     std::array<double, kMaxFingers> manipulability{};  ///< [kManipulabilityUnit]
   };
 
-  /// A turn by `angle` [rad, >= 0] about the unit vector `axis_W` through the object's centre.
-  void Start(const Vector3d& axis_W, double angle, double speed_rad_s);
+  /// A motion of the object along a straight path of length `length` (>= 0). `per_path`: its
+  /// velocity per speed along the path. A turn: length in rad, w_W the unit axis through the
+  /// object's centre. A shift: length in m, w_W zero, v_W a unit vector. Both at once: length in
+  /// rad, w_W the unit axis, v_W in m/rad. `speed`, `acceleration`: along the path, > 0.
+  void Start(const ObjectMotion& per_path, double length, double speed, double acceleration,
+             AtLimit policy);
   /// Slows down and ends with kStopped.
   void Stop() { stop_ = true; }
   /// One tick: the motion of the object reference. `fingers`: bits of the holding fingers;
@@ -43,19 +54,25 @@ class LocalManipulation {
 
   End end() const { return end_; }
   int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
-  double angle() const { return angle_; }         ///< wanted [rad]
-  double turned() const { return turned_; }       ///< of the reference since Start [rad]
-  double speed() const { return speed_; }         ///< [rad/s]
+  /// Bits of the fingers that have had a joint at a limit against which they would have moved.
+  unsigned at_limit() const { return at_limit_; }
+  double length() const { return length_; }        ///< of the path [rad, or m for a shift]
+  double travelled() const { return travelled_; }  ///< by the reference since Start, same unit
+  double speed() const { return speed_; }          ///< along the path [1/s]
   void AddTo(StateHasher* hasher) const;
 
  private:
-  End FindEnd(const HandModel& hand, const Estimate& estimate, const Vector3d& p_ref,
-              const Home& home, unsigned fingers, double margin, const GaitParameters& parameters);
+  End FindEnd(const HandModel& hand, const Estimate& estimate, const Home& home, unsigned fingers,
+              double margin, const GaitParameters& parameters);
+  bool turns() const { return !per_path_.w_W.isZero(0); }
 
-  Vector3d axis_W_ = Vector3d::UnitZ();
-  double angle_ = 0, speed_max_ = 0;
-  double turned_ = 0, speed_ = 0;
+  ObjectMotion per_path_;
+  double length_ = 0, speed_max_ = 0, acceleration_ = 0;
+  double travelled_ = 0, speed_ = 0;
+  AtLimit policy_ = AtLimit::kEnds;
   bool stop_ = false;
+  unsigned at_limit_ = 0;
+  int limited_finger_ = -1;  // in this tick
   unsigned at_limit_at_first_ =
       0;            // bits of the fingers with a joint at its limit when the motion began
   int waited_ = 0;  // ticks

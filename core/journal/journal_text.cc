@@ -25,6 +25,7 @@ constexpr std::array kMethods = {
     MethodName{CommandType::kRelease, "release"},
     MethodName{CommandType::kExplore, "explore"},
     MethodName{CommandType::kRotate, "rotate"},
+    MethodName{CommandType::kMove, "move"},
     MethodName{CommandType::kStop, "stop"},
     MethodName{CommandType::kNoise, "noise.set"},
     MethodName{CommandType::kPush, "push"},
@@ -64,6 +65,11 @@ void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter
       a("angle_rad", c.angle_rad);
       a("axis_W", c.axis_W);
       a("speed_rad_s", c.speed_rad_s);
+      break;
+    case CommandType::kMove:
+      a("job", c.job);
+      a("offset_m", c.offset_W);
+      a("rotation_rad", c.rotation_W);
       break;
     case CommandType::kNoise:
       a("noise", c.noise);

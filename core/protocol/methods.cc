@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 namespace regrasp {
 namespace {
@@ -105,6 +106,22 @@ constexpr std::array kJobWait = {
               .min = 0,
               .max = 1e6,
               .default_text = "no limit"},
+};
+constexpr std::array kMove = {
+    ParamSpec{.name = "offset_m",
+              .type = kVector3,
+              .sentence = "shift of the object's centre, in W; its length is at most 0.05 m",
+              .unit = "m",
+              .min = -kMaxMoveOffset,
+              .max = kMaxMoveOffset,
+              .default_text = "[0, 0, 0]"},
+    ParamSpec{.name = "rotation_rad",
+              .type = kVector3,
+              .sentence = "turn of the object, a rotation vector in W; its length is at most pi",
+              .unit = "rad",
+              .min = -std::numbers::pi,
+              .max = std::numbers::pi,
+              .default_text = "[0, 0, 0]"},
 };
 constexpr std::array kNoiseSet = {
     ParamSpec{.name = "preset",
@@ -323,6 +340,8 @@ constexpr std::array kMethods = {
     MethodSpec{
         "joints", "joints", "joint angles, rates and torques", kNone, false,
         "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
+    MethodSpec{"move", "move", "move the object a little with all fingers, without a regrasp",
+               kMove, true, "job"},
     MethodSpec{"noise.get", "noise show", "noise levels of the sensors", kNone, false,
                "preset and every level"},
     MethodSpec{"noise.set", "noise set", "change noise levels", kNoiseSet, false,

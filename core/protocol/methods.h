@@ -16,6 +16,7 @@ inline constexpr int kMaxRequestDepth = 32;                 ///< nested arrays a
 inline constexpr std::size_t kMaxBatch = 32;                ///< requests per line
 inline constexpr std::size_t kMaxIdBytes = 64;              ///< of a string id
 inline constexpr double kMaxSafeInteger = 9007199254740992.0;  ///< 2^53: ids, seeds, job numbers
+inline constexpr double kMaxMoveOffset = 0.05;                 ///< of one `move` [m]
 inline constexpr std::size_t kMaxOutputBytes = 1024 * 1024;    ///< unread output before eviction
 inline constexpr int kMaxOutputStallSeconds = 10;              ///< without progress before eviction
 

@@ -195,4 +195,25 @@ void Session::Impl::UpdateRotation() {
   Enter(SessionState::kHolding);
 }
 
+void Session::Impl::StartMove(const Command& command) {
+  job.move.offset_m = command.offset_W;
+  job.move.rotation_rad = command.rotation_W;
+  move.Start({command.offset_W, command.rotation_W}, hand, estimator.estimate(),
+             controller.wrench(), GraspFingers(), parameters.gait);
+  p_WO_start = world->state().p_WO;
+  q_WO_start = world->state().q_WO;
+  Enter(SessionState::kMoving);
+}
+
+void Session::Impl::UpdateMove() {
+  const FingerGait::Margins margins = Margins();
+  motion = move.Update(hand, estimator.estimate(), margins.all, margins.without, parameters.control,
+                       parameters.gait, dt, &controller, &tasks);
+  JudgeMove();
+  if (move.active()) return;
+  FinishJob(job.move.end == MoveEnd::kStopped ? JobState::kCancelled : JobState::kDone, "");
+  move = ObjectMove();
+  Enter(SessionState::kHolding);
+}
+
 }  // namespace regrasp

@@ -20,6 +20,7 @@ enum class CommandType : std::uint8_t {
   kRelease,
   kExplore,
   kRotate,
+  kMove,
   kStop,
   kNoise,
   kPush,
@@ -32,8 +33,8 @@ enum class CommandType : std::uint8_t {
 struct Command {
   CommandType type = CommandType::kStop;
   std::int64_t job =
-      0;            ///< id of the new job (grasp, release, explore, rotate), chosen by the
-                    ///< caller; or the job to cancel; branch: new id of the running job, 0 = keep
+      0;  ///< id of the new job (grasp, release, explore, rotate, move), chosen by
+          ///< the caller; or the job to cancel; branch: new id of the running job, 0 = keep
   int finger = -1;  ///< explore
   Criterion criterion = Criterion::kManipulability;
   Estimator estimator = Estimator::kLeastSquares;
@@ -42,8 +43,10 @@ struct Command {
   int max_cycles = 0;       ///< explore: 0 = parameter exploration.max_cycles
   bool continuous = false;  ///< rotate
   double angle_rad = 0;     ///< rotate, signed
-  Vector3d axis_W = Vector3d::UnitZ();  ///< rotate, unit
-  double speed_rad_s = 0;               ///< rotate: 0 = parameter gait.speed_rad_s
+  Vector3d axis_W = Vector3d::UnitZ();     ///< rotate, unit
+  double speed_rad_s = 0;                  ///< rotate: 0 = parameter gait.speed_rad_s
+  Vector3d offset_W = Vector3d::Zero();    ///< move: of the object's centre [m]
+  Vector3d rotation_W = Vector3d::Zero();  ///< move: rotation vector [rad]; not both zero
   NoiseLevels noise;
   Vector3d force_W = Vector3d::Zero();  ///< push [N]
   double duration_s = 0;                ///< push

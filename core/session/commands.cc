@@ -36,6 +36,7 @@ Verdict Check(CommandType type, SessionState state, bool job_running) {
       return {};
     case CommandType::kExplore:
     case CommandType::kRotate:
+    case CommandType::kMove:
       if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
       if (state == SessionState::kDropped || faulted)
         return {Kind::kBadState, "the hand does not hold the object", "regrasp reset"};
@@ -126,6 +127,10 @@ Verdict Session::Impl::Apply(const Command& command) {
       StartJob(command, JobMethod::kRotate);
       StartRotation(command);
       break;
+    case CommandType::kMove:
+      StartJob(command, JobMethod::kMove);
+      StartMove(command);
+      break;
     case CommandType::kStop:
       StopJob();
       break;
@@ -202,6 +207,9 @@ void Session::Impl::StopJob() {
       break;
     case JobMethod::kRotate:
       gait.Stop();
+      break;
+    case JobMethod::kMove:
+      move.Stop();
       break;
     default:
       break;  // letting go takes half a second and is not interrupted

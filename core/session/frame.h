@@ -19,6 +19,7 @@ enum class SessionState : std::uint8_t {
   kHolding,
   kExploring,
   kRotating,
+  kMoving,
   kDropped,
   kFaulted
 };

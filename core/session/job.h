@@ -10,7 +10,7 @@
 
 namespace regrasp {
 
-enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kStep, kRestore };
+enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kMove, kStep, kRestore };
 enum class JobState : std::uint8_t { kQueued, kRunning, kDone, kFailed, kCancelled };
 /// Why an exploration ended.
 enum class ExploreReason : std::uint8_t {
@@ -23,11 +23,25 @@ enum class ExploreReason : std::uint8_t {
   kObjectMoved,  ///< the other fingers could not carry what the finger dragged
 };
 
+/// Why a move ended.
+enum class MoveEnd : std::uint8_t {
+  kNone,
+  kReached,
+  kJointLimit,      ///< a finger's joint came to its limit
+  kObjectStuck,     ///< the object did not follow
+  kManipulability,  ///< a finger came near a singular posture
+  kExcursion,       ///< a contact was too far from its first place in the palm
+  kLoadMargin,      ///< the grasp could hardly carry more
+  kStopped,
+  kDropped,
+};
+
 /// The job that a command starts, or nothing for a command that starts none.
 std::optional<JobMethod> JobMethodOf(CommandType type);
 std::string_view Name(JobMethod method);      ///< "grasp", ...
 std::string_view Name(JobState state);        ///< "queued", ...
 std::string_view Name(ExploreReason reason);  ///< "gradient", "max_cycles", ...; "" for kNone
+std::string_view Name(MoveEnd end);           ///< "reached", "joint_limit", ...; "" for kNone
 
 struct ExploreResult {
   int finger = -1;
@@ -54,6 +68,18 @@ struct RotateResult {
   double sim_time_s = 0;
 };
 
+/// What was wanted, and what became of it by the truth (noise-free, from the simulator, for judging
+/// only). Offsets of the object's centre and rotation vectors in W, from where the move began.
+struct MoveResult {
+  Vector3d offset_m = Vector3d::Zero(), rotation_rad = Vector3d::Zero();  ///< wanted
+  Vector3d achieved_offset_m = Vector3d::Zero(), achieved_rotation_rad = Vector3d::Zero();
+  bool reached = false;  ///< the reference went all the way, and the object with it
+  MoveEnd end = MoveEnd::kNone;
+  int end_finger = -1;  ///< the finger that could not go on, or -1
+  double max_position_error_m = 0, max_rotation_error_rad = 0;  ///< object against its reference
+  double sim_time_s = 0;
+};
+
 /// One regrasp of the finger gait, judged by the truth (noise-free phi; stability or
 /// manipulability, whichever was the objective).
 struct RegraspRecord {
@@ -76,6 +102,7 @@ struct JobRecord {
   std::int64_t end_tick = -1;
   ExploreResult explore;  ///< method explore only
   RotateResult rotate;    ///< method rotate only
+  MoveResult move;        ///< method move only
 };
 
 }  // namespace regrasp

@@ -17,6 +17,29 @@ ControlParameters Unfiltered(ControlParameters parameters) {
   return parameters;
 }
 
+MoveEnd MoveEndOf(LocalManipulation::End end) {
+  using End = LocalManipulation::End;
+  switch (end) {
+    case End::kNone:
+      return MoveEnd::kNone;
+    case End::kReached:
+      return MoveEnd::kReached;
+    case End::kJointLimit:
+      return MoveEnd::kJointLimit;
+    case End::kStuck:
+      return MoveEnd::kObjectStuck;
+    case End::kManipulability:
+      return MoveEnd::kManipulability;
+    case End::kExcursion:
+      return MoveEnd::kExcursion;
+    case End::kMargin:
+      return MoveEnd::kLoadMargin;
+    case End::kStopped:
+      return MoveEnd::kStopped;
+  }
+  return MoveEnd::kNone;
+}
+
 }  // namespace
 
 void Session::Impl::LookAtTruth() {
@@ -37,7 +60,7 @@ void Session::Impl::WatchContacts() {
 void Session::Impl::WatchDrop() {
   const bool alone =
       state == SessionState::kHolding || state == SessionState::kExploring ||
-      state == SessionState::kRotating ||
+      state == SessionState::kRotating || state == SessionState::kMoving ||
       (state == SessionState::kGrasping && grasp.phase() == GraspSequence::Phase::kAlone);
   if (!alone || release_tick >= 0) {
     drop_ticks = 0;
@@ -54,8 +77,14 @@ void Session::Impl::WatchDrop() {
     if (!gait.active()) JudgeExplorationEnd();
   }
   if (state == SessionState::kRotating) job.rotate.dropped = true;
+  if (state == SessionState::kMoving) {
+    job.move.reached = false;
+    job.move.end = MoveEnd::kDropped;
+    job.move.end_finger = -1;
+  }
   exploration = FingerExploration();
   gait = FingerGait();
+  move = ObjectMove();
   Emit(EventKind::kDropped, -1, distance,
        "dropped: object %.0f mm from its place, %d fingers touch", distance * 1e3, touching);
   FinishJob(JobState::kFailed, "the object was dropped");
@@ -93,6 +122,24 @@ void Session::Impl::JudgeRotation() {
   r.sim_time_s = static_cast<double>(tick - job.start_tick) * dt;
   if (!gait.request().continuous)
     job.progress = std::clamp(gait.turned() / gait.target(), 0.0, 0.99);
+}
+
+void Session::Impl::JudgeMove() {
+  MoveResult& r = job.move;
+  const WorldState& truth = world->state();
+  const ObjectWrench& wrench = controller.wrench();
+  r.achieved_offset_m = truth.p_WO - p_WO_start;
+  r.achieved_rotation_rad = RotationVector(truth.q_WO * q_WO_start.conjugate());
+  r.max_position_error_m = std::max(r.max_position_error_m, (truth.p_WO - wrench.p_ref()).norm());
+  r.max_rotation_error_rad = std::max(
+      r.max_rotation_error_rad, RotationVector(wrench.q_ref() * truth.q_WO.conjugate()).norm());
+  r.end = MoveEndOf(move.manipulation().end());
+  r.reached = r.end == MoveEnd::kReached;
+  const bool of_finger = r.end == MoveEnd::kJointLimit || r.end == MoveEnd::kManipulability ||
+                         r.end == MoveEnd::kExcursion;
+  r.end_finger = of_finger ? move.manipulation().end_finger() : -1;
+  r.sim_time_s = static_cast<double>(tick - job.start_tick) * dt;
+  job.progress = std::clamp(move.progress(), 0.0, 0.99);
 }
 
 double Session::Impl::TruePhiOf(int finger) {

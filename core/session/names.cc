@@ -13,6 +13,8 @@ std::optional<JobMethod> JobMethodOf(CommandType type) {
       return JobMethod::kExplore;
     case CommandType::kRotate:
       return JobMethod::kRotate;
+    case CommandType::kMove:
+      return JobMethod::kMove;
     default:
       return {};
   }
@@ -28,6 +30,8 @@ std::string_view Name(JobMethod method) {
       return "explore";
     case JobMethod::kRotate:
       return "rotate";
+    case JobMethod::kMove:
+      return "move";
     case JobMethod::kStep:
       return "step";
     case JobMethod::kRestore:
@@ -72,6 +76,30 @@ std::string_view Name(ExploreReason reason) {
   return "";
 }
 
+std::string_view Name(MoveEnd end) {
+  switch (end) {
+    case MoveEnd::kNone:
+      return "";
+    case MoveEnd::kReached:
+      return "reached";
+    case MoveEnd::kJointLimit:
+      return "joint_limit";
+    case MoveEnd::kObjectStuck:
+      return "object_stuck";
+    case MoveEnd::kManipulability:
+      return "manipulability";
+    case MoveEnd::kExcursion:
+      return "excursion";
+    case MoveEnd::kLoadMargin:
+      return "load_margin";
+    case MoveEnd::kStopped:
+      return "stopped";
+    case MoveEnd::kDropped:
+      return "dropped";
+  }
+  return "";
+}
+
 std::string_view Name(SessionState state) {
   switch (state) {
     case SessionState::kIdle:
@@ -84,6 +112,8 @@ std::string_view Name(SessionState state) {
       return "exploring";
     case SessionState::kRotating:
       return "rotating";
+    case SessionState::kMoving:
+      return "moving";
     case SessionState::kDropped:
       return "dropped";
     case SessionState::kFaulted:

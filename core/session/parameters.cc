@@ -101,6 +101,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"gait.max_excursion", "m", 0.001, 0.1, 1, "Object motion ends with a contact this far from its first place in the palm.", kOurs, [](P& p) { return &p.gait.max_excursion; }},
   {"gait.min_manipulability", "", 0, 1, 1, "Object motion ends with a finger below this share of its first manipulability.", kOurs, [](P& p) { return &p.gait.min_manipulability; }},
   {"gait.mode", "", 0, 1, 1, "0: fingers explore for a better contact; 1: they return to their first one.", kOurs, [](P& p) { return &p.gait.mode; }},
+  {"gait.move_speed", "m/s", 0.0005, 0.1, 1, "Speed of the object while it is shifted; a shift and a turn at once go at the speed of the slower one.", kOurs, [](P& p) { return &p.gait.move_speed; }},
   {"gait.settle_s", "s", 0, 5, 1, "Rest between object motion and the first regrasp.", kMeasured, [](P& p) { return &p.gait.settle_s; }},
   {"gait.skip_distance", "m", 0, 0.02, 1, "A finger this near to its target does not regrasp (returning).", kMeasured, [](P& p) { return &p.gait.skip_distance; }},
   {"gait.slide_force", "N", 0.02, 2, 1, "Normal force of a sliding finger.", kMeasured, [](P& p) { return &p.gait.slide_force; }},

@@ -73,6 +73,8 @@ void Session::Impl::Tick() {
     UpdateExploration();
   } else if (state == SessionState::kRotating) {
     UpdateRotation();
+  } else if (state == SessionState::kMoving) {
+    UpdateMove();
   } else if (state == SessionState::kHolding) {
     HoldAll();
   }

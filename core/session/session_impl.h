@@ -13,6 +13,7 @@
 #include "core/control/hybrid_controller.h"
 #include "core/exploration/finger_exploration.h"
 #include "core/gait/finger_gait.h"
+#include "core/gait/object_move.h"
 #include "core/sensing/sensors.h"
 #include "core/session/quality_monitor.h"
 #include "core/session/session.h"
@@ -74,6 +75,8 @@ struct Session::Impl {
   FingerGait::Margins Margins() const;
   void StartRotation(const Command& command);
   void UpdateRotation();
+  void StartMove(const Command& command);
+  void UpdateMove();
   void UpdateGrasp();
   /// Opens the hand: a short pull away from the surface, then the open posture.
   void UpdateRelease();
@@ -87,6 +90,7 @@ struct Session::Impl {
   void JudgeExplorationEnd();
   /// The truth about the rotation so far, every tick so that no turn is missed.
   void JudgeRotation();
+  void JudgeMove();
   double TruePhiOf(int finger);
   void ReportGait();
 
@@ -112,8 +116,11 @@ struct Session::Impl {
   FingerExploration exploration;
   FingerExploration::Request explore_request;  // of the exploration that runs or waits for room
   FingerGait gait;
+  ObjectMove move;
   ObjectMotion motion;
   RegraspRecord regrasp;  // the last one
+  // True pose when the rotation or the move began.
+  Vector3d p_WO_start = Vector3d::Zero();
   Quaterniond q_WO_start = Quaterniond::Identity();
   QualityMonitor monitor;
   FingerTasks tasks;

@@ -141,6 +141,7 @@ std::uint64_t Session::Impl::Hash() const {
   grasp.AddTo(&hasher);
   exploration.AddTo(&hasher);
   gait.AddTo(&hasher);
+  move.AddTo(&hasher);
   monitor.AddTo(&hasher);
   hasher.Add(push_until);
   hasher.Add(release_tick);

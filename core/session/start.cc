@@ -40,6 +40,7 @@ void Session::Impl::Build(std::uint64_t new_seed) {
   exploration = FingerExploration();
   explore_request = {};
   gait = FingerGait();
+  move = ObjectMove();
   regrasp = RegraspRecord();
   monitor = QualityMonitor();
   q_open = q0;

@@ -18,7 +18,7 @@ ELSEWHERE = {
 }
 ENDLESS = {"events -f"}
 # The exit codes an example may have besides 0: the operation was carried out and did not succeed.
-MAY_FAIL = {"explore": {1}, "rotate": {1}}
+MAY_FAIL = {"explore": {1}, "rotate": {1}, "move": {1}}
 UNITS = ("_m", "_rad", "_n", "_s", "_nm", "_hz", "_kg", "_mm", "_deg", "_bytes", "_m_s", "_rad_s", "_m_s2", "_n_s", "_1_m", "_fraction", "_wxyz", "_W", "_id", "_j")
 # Numbers without a unit, and why: counts, numbers of things, ratios, measures without dimension.
 PLAIN = re.compile(
@@ -63,7 +63,7 @@ class EveryCommand(DaemonCase):
     def prepare(self, words):
         """The state in which the command is welcome."""
         self.run_words("resume")
-        if words in ("grasp", "release", "rotate", "explore", "stop", "push"):
+        if words in ("grasp", "release", "rotate", "move", "explore", "stop", "push"):
             self.run_words("reset", "--seed", "1")
             if words != "grasp":
                 self.run_words("grasp", "--wait")
@@ -113,7 +113,7 @@ class EveryCommand(DaemonCase):
     def test_no_colour_where_it_is_not_wanted(self):
         self.run_words("grasp", "--wait")
         for words, arguments in self.commands():
-            if words in ("bench", "doctor", "explore", "rotate", "grasp", "release"):
+            if words in ("bench", "doctor", "explore", "rotate", "move", "grasp", "release"):
                 continue  # seconds each; the same Output as the others, and in the tests above without colour
             with self.subTest(words):
                 self.prepare(words)

@@ -138,6 +138,29 @@ class Session(DaemonCase):
         self.assertEqual([line["seq"] for line in lines], sorted({line["seq"] for line in lines}))
         self.assertEqual(len(lines), 5)
 
+    def test_a_move_says_whether_it_got_there(self):
+        self.refused(5, "move", "--by", "0,0,3")
+        self.refused(2, "move")
+        self.expect(0, "grasp", "--wait")
+        for words, part in [(["--by", "0,0,60"], "--by 60: allowed are -50 to 50 MM"), (["--by", "40,40,0"], "offset_m of length 0.0565685 m is too long"),
+                            (["--turn", "150,150,0"], "rotation_rad of length"), (["--by", "0,0,0"], "leave nothing to move"), (["--turn", "1,2"], "--turn")]:
+            with self.subTest(words):
+                cause, _ = self.refused(2, "move", *words)
+                self.assertIn(part, cause)
+        record = self.json("move", "--by", "0,0,3", "--turn", "0,0,-10", "--wait")
+        self.assertEqual((record["method"], record["state"], record["reached"], record["end"]), ("move", "done", True, "reached"))
+        self.assertAlmostEqual(record["offset_m"][2], 0.003)
+        # The bound for one motion is 4 mm; a tenth of a millimetre or two is usual.
+        self.assertAlmostEqual(record["achieved_offset_m"][2], 0.003, delta=0.002)
+        text = self.expect(0, "job", "show", record["id"]).stdout
+        self.assertIn("move done, reached", text)
+        far = self.expect(1, "move", "--turn", "0,0,170", "--wait").stdout
+        self.assertRegex(far, r"move ended")
+        self.assertLessEqual(max(map(len, far.splitlines())), 80)
+        record = self.json("job", "show", self.json("job", "list")["jobs"][-1]["id"])
+        self.assertEqual((record["state"], record["reached"]), ("done", False))
+        self.assertEqual(self.json("status")["state"], "holding")
+
     def test_a_lost_object_is_a_failure(self):
         self.expect(0, "grasp", "--wait")
         self.expect(0, "param", "set", "object.friction", "0.05")

@@ -33,7 +33,7 @@ INSTEAD = {
 SHORTER = [(r"--seconds [\d.]+", "--seconds 1"), (r"--seeds \d+", "--seeds 1"), (r"--turns \d+", "--turns 0.1"), (r"(--seeds|-n) \d+", r"\1 1"),
            (r"bench_socket$", "bench_socket 20"), (r"bench_watchers.*", "bench_watchers 1"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
 # Does what it says whatever comes of it: an exploration that ends at N_max, a turn that drops the object.
-MAY_FAIL = re.compile(r"regrasp (explore|rotate)|claims")
+MAY_FAIL = re.compile(r"regrasp (explore|rotate|move)|claims")
 
 
 def help_examples():
@@ -74,7 +74,7 @@ class Documents(DaemonCase):
     def prepare(self, words):
         """What an example takes for granted: a daemon that holds the object (job 1), and for `job cancel` a second job."""
         self.run_line("regrasp up --speed max && regrasp resume")
-        if words in ("release", "rotate", "explore", "grasp", "push", "job cancel"):
+        if words in ("release", "rotate", "move", "explore", "grasp", "push", "job cancel"):
             self.run_line("regrasp reset --seed 1 && regrasp noise preset paper && regrasp param set object.friction 0.8 && regrasp param set gravity 0,0,-9.81")
             if words != "grasp":
                 self.run_line("regrasp grasp --wait")

@@ -23,7 +23,7 @@ class Runs(DaemonCase):
         self.expect(0, "step", ticks, "--wait")
 
     def record(self, name="run.mcap"):
-        """A grasp, an exploration, a push, noise changes; 5.2 s. Returns the path."""
+        """A grasp, an exploration, a push, noise changes, a rotation, a move; 6.7 s. Returns the path."""
         path = self.json("record", "start", name)["path"]
         self.expect(0, "grasp")
         self.step(2800)
@@ -37,6 +37,10 @@ class Runs(DaemonCase):
         self.step(200)
         self.expect(0, "rotate", "--angle", "10")
         self.step(600)
+        self.expect(0, "stop")
+        self.step(1000)
+        self.expect(0, "move", "--by", "0,0,1", "--turn", "0,5,0")
+        self.step(500)
         return pathlib.Path(path)
 
     def test_a_run_replays_in_another_process_and_tampering_shows(self):
@@ -48,7 +52,7 @@ class Runs(DaemonCase):
         whole = self.json("replay", "run")  # by its name in the output directory
         self.assertTrue(whole["identical"])
         self.assertTrue(whole["same_build"])
-        self.assertEqual((whole["commands"], whole["ticks"]), (7, 5200))
+        self.assertEqual((whole["commands"], whole["ticks"]), (9, 6700))
         self.assertGreater(whole["states_compared"], 500)
         self.expect(0, "down")
         self.assertIn("identical", self.expect(0, "replay", path, "--speed", "20").stdout)  # and without a daemon
@@ -100,8 +104,8 @@ class Runs(DaemonCase):
         found = self.json("replay", path)
         self.assertFalse(found["complete"])
         self.assertTrue(found["identical"])
-        self.assertEqual(found["commands"], 7)
-        self.assertGreaterEqual(found["ticks"], 4600)  # the last command, at the least
+        self.assertEqual(found["commands"], 9)
+        self.assertGreaterEqual(found["ticks"], 6200)  # the last command, at the least
         self.public_reader(path, complete=False, killed=True)
         self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "mended.mcap")
         self.assertTrue(self.json("replay", self.dir / "mended.mcap")["complete"])
@@ -112,7 +116,7 @@ class Runs(DaemonCase):
         messages = self.json("record", "stop")["messages"]
         counts = self.public_reader(path, complete=True)
         self.assertEqual(sum(stream for stream, _ in counts.values()), messages)
-        self.assertEqual(counts["commands"][0], 7)
+        self.assertEqual(counts["commands"][0], 9)
 
     def public_reader(self, path, complete, killed=False):
         """Reads `path` with @mcap/core; every message by stream, and by index when the file is complete."""

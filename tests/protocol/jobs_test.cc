@@ -169,6 +169,32 @@ TEST_F(Jobs, ARotationIsStoppedIntoAHoldAndItsRecordIsComplete) {
   EXPECT_GT(record["angle_rad"].get<double>(), 0.1);
 }
 
+TEST_F(Jobs, AMovesRecordIsComplete) {
+  const Json grasp = client->Result("grasp")["job"];
+  Step(6000);
+  ASSERT_EQ(Wait(grasp)["state"], "done");
+  const Json job = client->Result("move", {{"offset_m", {0, 0, 0.003}}})["job"];
+  Step(100);
+  EXPECT_EQ(client->Result("status")["state"], "moving");
+  const Json running = client->Result("job.get", {{"id", job}});
+  EXPECT_EQ(running["end"], Json());
+  EXPECT_EQ(running["reached"], false);
+  EXPECT_EQ(client->Error("move", {{"offset_m", {0, 0, 0.003}}}), -32001);
+  Step(3000);
+  const Json record = Wait(job);
+  EXPECT_EQ(record["method"], "move");
+  EXPECT_EQ(record["state"], "done");
+  EXPECT_EQ(record["reached"], true);
+  EXPECT_EQ(record["end"], "reached");
+  EXPECT_EQ(record["end_finger"], Json());
+  EXPECT_EQ(record["offset_m"], Json({0, 0, 0.003}));
+  EXPECT_EQ(record["rotation_rad"], Json({0, 0, 0}));
+  EXPECT_NEAR(record["achieved_offset_m"][2].get<double>(), 0.003, 1e-3);
+  for (const char* field :
+       {"achieved_rotation_rad", "max_position_error_m", "max_rotation_error_rad", "sim_time_s"})
+    EXPECT_TRUE(record.contains(field)) << field;
+}
+
 TEST_F(Jobs, TheListKeepsTheLast256) {
   for (int i = 0; i < 260; ++i) Step(1);
   const Json jobs = client->Result("job.list")["jobs"];

@@ -38,7 +38,20 @@ TEST_F(Requests, AnswerWithTheRightCode) {
        -32602},  // a double would round it
       {"explore", {{"finger", "ring"}, {"max_cycles", 0}}, -32602},
       {"explore", {{"finger", "ring"}, {"criterion", "best"}}, -32602},
-      {"explore", {{"finger", "ring"}}, -32002},  // nothing is held
+      {"explore", {{"finger", "ring"}}, -32002},        // nothing is held
+      {"move", {{"offset_m", {0, 0, 0.005}}}, -32002},  // nothing is held
+      {"move", {{"rotation_rad", {0, 0, 0.1}}}, -32002},
+      {"move", {}, -32602},
+      {"move", {{"offset_m", {0, 0, 0}}, {"rotation_rad", {0, 0, 0}}}, -32602},
+      {"move", {{"offset_m", {0, 0, 0.0501}}}, -32602},
+      {"move", {{"offset_m", {0.04, 0.04, 0}}}, -32602},  // each in range, the length is not
+      {"move", {{"rotation_rad", {2, 2, 2}}}, -32602},
+      {"move", {{"rotation_rad", {0, 0, 3.2}}}, -32602},
+      {"move", {{"offset_m", {0, 0.005}}}, -32602},
+      {"move", {{"offset_m", 0.005}}, -32602},
+      {"move", {{"offset_m", {0, 0, nullptr}}}, -32602},
+      {"move", {{"offset_m", {0, 0, "5"}}}, -32602},
+      {"move", {{"offset", {0, 0, 0.005}}}, -32602},
       {"release", {}, -32002},
       {"rotate", {{"turns", 1}}, -32002},  // nothing is held
       {"rotate", {}, -32602},
@@ -99,6 +112,7 @@ TEST_F(Requests, RefusedOnesChangeNothing) {
   client->Error("param.set", {{"name", "object.friction"}, {"value", 7}});
   client->Error("noise.set", {{"position_m", 0.002}, {"normal_rad", -1}});
   client->Error("grasp", {{"force", 3}});
+  client->Error("move", {{"offset_m", {0.04, 0.04, 0}}});
   EXPECT_EQ(client->Result("param.get"), before);
   EXPECT_EQ(client->Result("noise.get")["preset"], "paper");
   EXPECT_EQ(client->Result("status")["state_hash"], hash);
@@ -110,6 +124,10 @@ TEST_F(Requests, ErrorsNameParameterHintAndAllowedValues) {
   EXPECT_EQ(error["data"]["param"], "finger");
   EXPECT_EQ(error["data"]["hint"], "did you mean 'ring'?");
   EXPECT_EQ(error["data"]["allowed"].size(), 5u);
+  const Json move = client->Ask("move", {{"offset_m", {0.04, 0.03, 0.04}}})["error"];
+  EXPECT_EQ(move["message"], "offset_m of length 0.0640312 m is too long");
+  EXPECT_EQ(move["data"]["param"], "offset_m");
+  EXPECT_EQ(move["data"]["hint"], "allowed: at most 0.05 m");
   EXPECT_EQ(client->Ask("explore", {{"figner", "ring"}})["error"]["data"]["hint"],
             "did you mean 'finger'?");
   EXPECT_EQ(client->Ask("stauts")["error"]["data"]["hint"], "did you mean 'status'?");

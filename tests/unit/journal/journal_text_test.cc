@@ -52,8 +52,8 @@ TEST(JournalText, EveryCommandComesBack) {
   std::size_t seq = 0;
   for (const CommandType type :
        {CommandType::kGrasp, CommandType::kRelease, CommandType::kExplore, CommandType::kRotate,
-        CommandType::kStop, CommandType::kNoise, CommandType::kPush, CommandType::kParameter,
-        CommandType::kCancelJob, CommandType::kBranch}) {
+        CommandType::kMove, CommandType::kStop, CommandType::kNoise, CommandType::kPush,
+        CommandType::kParameter, CommandType::kCancelJob, CommandType::kBranch}) {
     JournalEntry entry;
     entry.tick = 12345;
     entry.state_hash = 0x00ab;
@@ -69,6 +69,8 @@ TEST(JournalText, EveryCommandComesBack) {
     c.angle_rad = -0.1;
     c.axis_W = Vector3d(0.6, 0, -0.8);
     c.speed_rad_s = 1.0 / 3;
+    c.offset_W = Vector3d(0.001, -0.002, 1.0 / 300);
+    c.rotation_W = Vector3d(-0.1, 0.2, 1.0 / 7);
     c.noise = *NoisePreset("coarse");
     c.force_W = Vector3d(0.1, 0.2, 0.3);
     c.duration_s = 0.7;

@@ -1,0 +1,50 @@
+#pragma once
+
+/// One local manipulation on its own: all fingers hold, and the object moves a little along and
+/// about any axis without a regrasp, as far as the fingers reach. A finger with a joint at its
+/// limit presses lightly, so that it rolls and slips, as long as the grasp without it has load
+/// margin enough (gait.margin_min).
+
+#include "core/gait/local_manipulation.h"
+
+namespace regrasp {
+
+class ObjectMove {
+ public:
+  struct Request {
+    Vector3d offset_W = Vector3d::Zero();    ///< of the object's centre [m]
+    Vector3d rotation_W = Vector3d::Zero();  ///< rotation vector, norm at most pi [rad]
+  };
+
+  /// `fingers`: bits of the fingers of the grasp. Offset and rotation are not both zero; both go
+  /// along their whole way at the same time, at the speed of the slower one.
+  void Start(const Request& request, const HandModel& hand, const Estimate& estimate,
+             const ObjectWrench& wrench, unsigned fingers, const GaitParameters& parameters);
+  /// Slows down, then comes to rest.
+  void Stop() { manipulation_.Stop(); }
+  /// One tick: sets the task of every finger of the grasp, returns the object's motion. Where the
+  /// motion ends early the object's reference becomes where it is. `margin`, `margin_without`: load
+  /// margins of the grasp, and without each finger [N]; dt [s].
+  ObjectMotion Update(const HandModel& hand, const Estimate& estimate, double margin,
+                      const std::array<double, kMaxFingers>& margin_without,
+                      const ControlParameters& control, const GaitParameters& parameters, double dt,
+                      HybridController* controller, FingerTasks* tasks);
+
+  /// Moves, or comes to rest after its end.
+  bool active() const { return active_; }
+  double progress() const { return manipulation_.travelled() / manipulation_.length(); }  ///< 0..1
+  const LocalManipulation& manipulation() const { return manipulation_; }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  bool active_ = false;
+  unsigned fingers_ = 0;
+  LocalManipulation manipulation_;
+  LocalManipulation::Home home_;
+  double margin_ = 0;  // low-passed, as the next [N]
+  std::array<double, kMaxFingers> margin_without_{};
+  bool have_margins_ = false;
+  int rest_ticks_ = 0;  // since the end of the motion
+};
+
+}  // namespace regrasp
