@@ -56,7 +56,8 @@ BandLook LookOfGaitState(const HandModel& hand, int value) {
   if (value == kTurning) return {"turn", Tint(kInk, 0.9)};
   const std::string name = FingerName(hand, value);
   const char initial = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
-  return {fmt::format("S_{}", initial), Tint(LookOfFinger(value).colour, 0.42)};
+  return {fmt::format("S_{}", initial), Tint(LookOfFinger(value).colour, 0.42),
+          std::string(1, initial)};
 }
 
 /// The stability that the exploring finger maximises: in S_F that of the grasp without the thumb.
