@@ -341,8 +341,11 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
       if (e.kind != EventKind::kRegrasp) continue;
       const RegraspRecord& r = session.last_regrasp();
       if (r.aborted || r.phi_start <= 0) continue;
-      const bool stability = r.criterion == Criterion::kStability || r.on_stability;
-      (stability ? shifts : changes).push_back({r.finger, r.phi_before, r.phi_start, r.phi_after});
+      const PhiChange change{r.finger, r.phi_before, r.phi_start, r.phi_after};
+      if (r.criterion == Criterion::kStability)
+        shifts.push_back(change);
+      else if (!r.on_stability)
+        changes.push_back(change);
     }
     for (const JobRecord& j : session.TakeFinishedJobs()) job = j;
   }
@@ -448,6 +451,7 @@ int Rotate(const Options& o) {
       low_rose += r[13];
       shifted += r[16];
       raised += r[17];
+      if (r[16] == 0) continue;
       stability_start.push_back(r[18]);
       stability_after.push_back(r[19]);
     }

@@ -19,6 +19,7 @@ constexpr int kHoldSamples = 50;
 constexpr std::int64_t kHoldChunk = 20;           // a second in all: sensor noise averages out
 constexpr double kExploring = 0, kReturning = 1;  // values of gait.mode
 constexpr double kGaitWindow = 40;                // of figure 3b: its bands stay legible [s]
+constexpr double kStabilityFalls = 0.02;          // more than the noise of one reading
 constexpr std::int64_t kFirstRepeat = 1000;       // seeds of the start gradients, after the run's
 const Json kAxis_W = {0, 0, -1};
 constexpr double kAngleTolerance = 5;  // [deg]
@@ -178,14 +179,17 @@ void Figures::Tradeoff() {
   const Exploration first = Explore("little", "manipulability", seed_);
   const Exploration second = Explore("little", "combined", seed_);
   Picture("comparison", "figure2-little.png");
-  measured_["tradeoff"] = {{"manipulability", first.record},
+  const bool shown =
+      Rose(first.record) && first.first_stability - first.last_stability > kStabilityFalls;
+  measured_["tradeoff"] = {{"shown", shown},
+                           {"manipulability", first.record},
                            {"combined", second.record},
                            {"first_stability", first.first_stability},
                            {"last_stability", {first.last_stability, second.last_stability}}};
   Add("fig. 2: stability may decrease",
       fmt::format("little: {:.2f} to {:.2f}, by the sum {:.2f}", first.first_stability,
                   first.last_stability, second.last_stability),
-      first.last_stability < first.first_stability);
+      shown);
 }
 
 void Figures::Repeats(int repeats) {

@@ -24,7 +24,13 @@ std::string DidYouMean(std::string_view wanted, const std::vector<std::string_vi
 std::string Written(const toml::node& node) {
   std::ostringstream text;
   node.visit([&text](const auto& value) { text << value; });
-  return text.str();
+  constexpr std::size_t kMost = 60;
+  std::string written = text.str();
+  std::replace(written.begin(), written.end(), '\n', ' ');
+  if (written.size() <= kMost) return written;
+  std::size_t end = kMost;
+  while ((written[end] & 0xC0) == 0x80) --end;  // not within a UTF-8 character
+  return written.substr(0, end) + "...";
 }
 
 struct Reader {

@@ -216,6 +216,7 @@ void ControlLoop::CancelEverything(const char* why) {
     job.state = JobState::kCancelled;
     job.end_tick = tick;
     job.explore.reason = ExploreReason::kCancelled;
+    job.move.end = MoveEnd::kStopped;
     CopyText(job.error, why);
     EmitJob(job);
   }

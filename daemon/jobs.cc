@@ -39,9 +39,14 @@ const JobRecord* JobTable::Find(std::int64_t id) const {
 void JobTable::Update(const JobRecord& record) {
   JobRecord* known = FindMutable(record.id);
   if (!known || Ended(known->state)) return;
-  // A job that ended before it began has no start, and its explore fields are those of the request.
+  // A job that ended before it began has no start, and its fields are those of the request.
   const ExploreResult requested = known->explore;
+  const MoveResult wanted = known->move;
   *known = record;
+  if (record.start_tick < 0) {
+    known->move.offset_m = wanted.offset_m;
+    known->move.rotation_rad = wanted.rotation_rad;
+  }
   if (record.start_tick < 0 && record.explore.finger < 0) {
     const ExploreReason reason = record.explore.reason;
     known->explore = requested;

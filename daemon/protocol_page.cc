@@ -98,7 +98,8 @@ std::string ProtocolPage() {
       "noise-free, from the simulator, for judging only. A `move` job adds `offset_m[3], "
       "rotation_rad[3]` (wanted)`, achieved_offset_m[3], achieved_rotation_rad[3], reached, end` "
       "(`reached`, `joint_limit`, `object_stuck`, `manipulability`, `excursion`, `load_margin`, "
-      "`stopped`, `dropped`; null while it moves)`, end_finger` (whose limit it was, or null)`, "
+      "`stopped`, `dropped`; null while it moves, and where it never moved or the simulation "
+      "faulted)`, end_finger` (whose limit it was, or null)`, "
       "max_position_error_m, max_rotation_error_rad` (object against its reference)`, sim_time_s`; "
       "what was achieved and the errors are noise-free, too.\n\n";
   page +=

@@ -12,6 +12,7 @@ namespace regrasp::handlers {
 namespace {
 
 constexpr double kLeastAxis = 1e-9;  // shorter than this, an axis has no direction
+constexpr double kLeastMove = 1e-9;  // shorter than this, an offset [m] or rotation [rad] is none
 
 /// Checks, makes a job and queues the command that works on it.
 Outcome StartJob(Service& service, JobMethod method, Command command) {
@@ -22,6 +23,8 @@ Outcome StartJob(Service& service, JobMethod method, Command command) {
   job.explore.criterion = command.criterion;
   job.explore.estimator = command.estimator;
   job.explore.seed = command.seed;
+  job.move.offset_m = command.offset_W;
+  job.move.rotation_rad = command.rotation_W;
   command.job = id;
   try {
     const std::uint64_t barrier = service.PostCommand(std::move(command));
@@ -117,6 +120,8 @@ Outcome Move(Service& service, const Params& params, Client&) {
   Command command = Of(CommandType::kMove);
   command.offset_W = params.Vector("offset_m");
   command.rotation_W = params.Vector("rotation_rad");
+  for (Vector3d* vector : {&command.offset_W, &command.rotation_W})
+    if (vector->norm() < kLeastMove) vector->setZero();
   if (command.offset_W.isZero(0) && command.rotation_W.isZero(0))
     throw RpcException(RpcError{ErrorCode::kInvalidParams,
                                 "an offset and a rotation of 0 leave nothing to move",

@@ -18,7 +18,7 @@ class LocalManipulation {
     kNone,            ///< still moving
     kReached,         ///< where it should
     kJointLimit,      ///< a joint has come to its limit and would have to go on
-    kStuck,           ///< the object has not followed its reference for some time, no joint is why
+    kStuck,           ///< the object has not followed its reference for some time
     kManipulability,  ///< a finger is near a singular posture
     kExcursion,       ///< a contact is too far from its first place
     kMargin,          ///< the grasp could hardly carry more

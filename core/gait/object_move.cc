@@ -43,14 +43,22 @@ ObjectMotion ObjectMove::Update(const HandModel& hand, const Estimate& estimate,
   for (std::size_t i = 0; i < margin_without.size(); ++i)
     margin_without_[i] += gain * (margin_without[i] - margin_without_[i]);
 
+  // Of the fingers at a limit the one that the grasp can best do without.
+  int yielding = -1;
+  for (int i = 0; i < hand.num_fingers(); ++i)
+    if ((fingers_ & manipulation_.at_limit()) >> i & 1u &&
+        margin_without_[i] >= parameters.margin_min &&
+        (yielding < 0 || margin_without_[i] > margin_without_[yielding]))
+      yielding = i;
   for (int i = 0; i < hand.num_fingers(); ++i) {
     if (!(fingers_ >> i & 1u)) continue;
-    const bool yields =
-        (manipulation_.at_limit() >> i & 1u) && margin_without_[i] >= parameters.margin_min;
     FingerTask& task = (*tasks)[i];
     task.mode = FingerMode::kHold;
-    task.cap = yields ? kYieldingCap * parameters.slide_force : control.max_normal_force;
-    task.grip = yields ? parameters.slide_force : parameters.grip_force;
+    task.cap = control.max_normal_force;
+    task.grip = parameters.grip_force;
+    if (i != yielding) continue;
+    task.cap = std::min(task.cap, kYieldingCap * parameters.slide_force);
+    task.grip = parameters.slide_force;
   }
 
   using End = LocalManipulation::End;
@@ -69,6 +77,7 @@ ObjectMotion ObjectMove::Update(const HandModel& hand, const Estimate& estimate,
 void ObjectMove::AddTo(StateHasher* hasher) const {
   hasher->Add(active_);
   if (!active_) return;
+  hasher->Add(stop_);
   hasher->Add(fingers_);
   hasher->Add(home_.p_WO);
   for (const Vector3d& p_OC : home_.p_OC) hasher->Add(p_OC);

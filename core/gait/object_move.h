@@ -1,9 +1,9 @@
 #pragma once
 
 /// One local manipulation on its own: all fingers hold, and the object moves a little along and
-/// about any axis without a regrasp, as far as the fingers reach. A finger with a joint at its
-/// limit presses lightly, so that it rolls and slips, as long as the grasp without it has load
-/// margin enough (gait.margin_min).
+/// about any axis without a regrasp, as far as the fingers reach. A finger that a joint limit
+/// has held up presses lightly from then on, so that it rolls and slips, while the grasp without it
+/// has load margin enough (gait.margin_min). One finger at a time: the margin counts on the others.
 
 #include "core/gait/local_manipulation.h"
 
@@ -21,7 +21,10 @@ class ObjectMove {
   void Start(const Request& request, const HandModel& hand, const Estimate& estimate,
              const ObjectWrench& wrench, unsigned fingers, const GaitParameters& parameters);
   /// Slows down, then comes to rest.
-  void Stop() { manipulation_.Stop(); }
+  void Stop() {
+    stop_ = true;
+    manipulation_.Stop();
+  }
   /// One tick: sets the task of every finger of the grasp, returns the object's motion. Where the
   /// motion ends early the object's reference becomes where it is. `margin`, `margin_without`: load
   /// margins of the grasp, and without each finger [N]; dt [s].
@@ -32,12 +35,14 @@ class ObjectMove {
 
   /// Moves, or comes to rest after its end.
   bool active() const { return active_; }
+  bool stopped() const { return stop_; }  ///< Stop() was called
   double progress() const { return manipulation_.travelled() / manipulation_.length(); }  ///< 0..1
   const LocalManipulation& manipulation() const { return manipulation_; }
   void AddTo(StateHasher* hasher) const;
 
  private:
   bool active_ = false;
+  bool stop_ = false;
   unsigned fingers_ = 0;
   LocalManipulation manipulation_;
   LocalManipulation::Home home_;

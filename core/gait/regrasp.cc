@@ -256,7 +256,8 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
         if (request_.explore) controller->RestHere(estimate, request_.finger);
       }
       task.mode = FingerMode::kHold;
-      task.cap = std::max(cap_start_, cap_start_ + ramp * (parameters.grip_force - cap_start_));
+      const double grip = std::min(parameters.grip_force, control.max_normal_force);
+      task.cap = std::max(cap_start_, cap_start_ + ramp * (grip - cap_start_));
       task.grip = std::min(parameters.grip_force, task.cap);
       if (ramp < 1.0) break;
       lost_ = !touching && ticks_ * dt > kLost_s;

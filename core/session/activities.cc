@@ -211,7 +211,9 @@ void Session::Impl::UpdateMove() {
                        parameters.gait, dt, &controller, &tasks);
   JudgeMove();
   if (move.active()) return;
-  FinishJob(job.move.end == MoveEnd::kStopped ? JobState::kCancelled : JobState::kDone, "");
+  const bool stopped = move.stopped() && !job.move.reached;
+  if (stopped) job.move.end = MoveEnd::kStopped;
+  FinishJob(stopped ? JobState::kCancelled : JobState::kDone, "");
   move = ObjectMove();
   Enter(SessionState::kHolding);
 }

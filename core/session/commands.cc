@@ -82,6 +82,8 @@ Verdict Session::Impl::Refuse(const Command& command, const Verdict& verdict) {
     refused.state = JobState::kFailed;
     refused.start_tick = refused.end_tick = tick;
     refused.explore.finger = command.finger;
+    refused.move.offset_m = command.offset_W;
+    refused.move.rotation_rad = command.rotation_W;
     std::snprintf(refused.error, sizeof(refused.error), "%s", verdict.reason);
     finished.push_back(refused);
   }

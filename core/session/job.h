@@ -73,7 +73,7 @@ struct RotateResult {
 struct MoveResult {
   Vector3d offset_m = Vector3d::Zero(), rotation_rad = Vector3d::Zero();  ///< wanted
   Vector3d achieved_offset_m = Vector3d::Zero(), achieved_rotation_rad = Vector3d::Zero();
-  bool reached = false;  ///< the reference went all the way, and the object with it
+  bool reached = false;  ///< the reference went all the way
   MoveEnd end = MoveEnd::kNone;
   int end_finger = -1;  ///< the finger that could not go on, or -1
   double max_position_error_m = 0, max_rotation_error_rad = 0;  ///< object against its reference

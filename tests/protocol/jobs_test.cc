@@ -173,7 +173,9 @@ TEST_F(Jobs, AMovesRecordIsComplete) {
   const Json grasp = client->Result("grasp")["job"];
   Step(6000);
   ASSERT_EQ(Wait(grasp)["state"], "done");
-  const Json job = client->Result("move", {{"offset_m", {0, 0, 0.003}}})["job"];
+  const Json job = client->Result(
+      "move", {{"offset_m", {0, 0, 0.003}}, {"rotation_rad", {1e-157, 0, 0}}})["job"];
+  EXPECT_EQ(client->Result("job.get", {{"id", job}})["offset_m"], Json({0, 0, 0.003}));  // queued
   Step(100);
   EXPECT_EQ(client->Result("status")["state"], "moving");
   const Json running = client->Result("job.get", {{"id", job}});

@@ -43,6 +43,8 @@ TEST_F(Requests, AnswerWithTheRightCode) {
       {"move", {{"rotation_rad", {0, 0, 0.1}}}, -32002},
       {"move", {}, -32602},
       {"move", {{"offset_m", {0, 0, 0}}, {"rotation_rad", {0, 0, 0}}}, -32602},
+      // Too short to have a direction.
+      {"move", {{"offset_m", {1e-170, 0, 0}}, {"rotation_rad", {0, 1e-157, 0}}}, -32602},
       {"move", {{"offset_m", {0, 0, 0.0501}}}, -32602},
       {"move", {{"offset_m", {0.04, 0.04, 0}}}, -32602},  // each in range, the length is not
       {"move", {{"rotation_rad", {2, 2, 2}}}, -32602},
