@@ -85,12 +85,11 @@ TEST(JournalText, EveryCommandComesBack) {
     EXPECT_EQ(EntryText(read.entry, config, 2, seq), text);
     ++seq;
   }
-  EXPECT_EQ(
-      ParseEntry(EntryText({.tick = 1, .command = {.type = CommandType::kExplore, .finger = 3}},
-                           config, 0, 0),
-                 config)
-          .entry.command.finger,
-      3);
+  JournalEntry explore;
+  explore.tick = 1;
+  explore.command.type = CommandType::kExplore;
+  explore.command.finger = 3;
+  EXPECT_EQ(ParseEntry(EntryText(explore, config, 0, 0), config).entry.command.finger, 3);
 }
 
 TEST(JournalText, TellsWhatIsWrong) {
