@@ -22,6 +22,7 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -605,7 +606,7 @@ int Repeat(const Options& o) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int Main(int argc, char** argv) {
   Options o;
   if (argc > 1) o.what = argv[1];
   for (int i = 2; i < argc; ++i) {
@@ -678,5 +679,16 @@ int main(int argc, char** argv) {
   std::fprintf(stderr,
                "usage: claims hold|objects|explore|rotate|move|repeat [options]; see the head of "
                "bench/claims.cc\n");
+  return 2;
+}
+
+int main(int argc, char** argv) {
+  try {
+    return Main(argc, argv);
+  } catch (const std::invalid_argument&) {
+    std::fprintf(stderr, "claims: the value of an option is not a number\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "claims: %s\n", error.what());
+  }
   return 2;
 }
