@@ -670,6 +670,7 @@ int Main(int argc, char** argv) {
       return 2;
     }
   }
+  MakeConfig(o, o.first, o.object);  // throws here, before any trial, what is wrong with them
   if (o.what == "hold") return Hold(o);
   if (o.what == "objects") return Objects(o);
   if (o.what == "explore") return Explore(o);
