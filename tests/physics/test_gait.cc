@@ -50,6 +50,27 @@ Command Turn(double degrees, const Vector3d& axis) {
   return command;
 }
 
+// The seed on which a hop along a chord scraped the object, so that the little finger came back a
+// little less far every time and the load margin fell to a half.
+TEST(Rotate, EveryFingerComesBackEveryTime) {
+  constexpr double kTilt = 60 * kDegree;
+  SessionConfig config = Config(30502);
+  config.parameters.gravity_W =
+      config.parameters.gravity_W.norm() * Vector3d(0, std::cos(kTilt), std::sin(kTilt));
+  Session session(std::move(config));
+  ASSERT_NO_FATAL_FAILURE(Grasp(session));
+  const auto margin_after = [&](double degrees) {
+    session.Apply(Turn(degrees, -Vector3d::UnitZ()));
+    const JobRecord job = Finish(session, 60);
+    EXPECT_EQ(job.state, JobState::kDone) << job.error;
+    Frame frame;
+    session.Snapshot(&frame, false);
+    return frame.stability.load_margin;
+  };
+  const double first = margin_after(20);
+  EXPECT_GT(margin_after(180), 0.8 * first);
+}
+
 TEST(Rotate, TurnsTheObjectOnceAndGoesOnHolding) {
   Session session(Config(1));
   ASSERT_NO_FATAL_FAILURE(Grasp(session));
