@@ -19,6 +19,7 @@ struct ControlParameters {
   double force_filter_s = 0.010;
   double contact_filter_s = 0.030;
   double pose_filter_s = 0.050;
+  double margin_filter_s = 0.050;  ///< load margins
   double contact_from_normal =
       1;  ///< 1: contact point from the sensed normal and the fingertip's known shape
   // Object wrench: PI law on the object pose.

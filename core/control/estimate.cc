@@ -115,12 +115,11 @@ void StateEstimator::AddTo(StateHasher* hasher) const {
   }
 }
 
-Grasp GraspOf(const Estimate& estimate, unsigned fingers, double mu) {
+Grasp GraspOf(const Estimate& estimate, FingerSet fingers, double mu) {
   Grasp grasp;
-  for (std::size_t i = 0; i < estimate.fingers.size(); ++i) {
+  for (int i : fingers) {
     const FingerEstimate& f = estimate.fingers[i];
-    if (!(fingers >> i & 1u) || !f.ever_in_contact || f.ticks_without_contact >= kLostTicks)
-      continue;
+    if (!f.ever_in_contact || f.ticks_without_contact >= kLostTicks) continue;
     grasp.push_back({f.p_WC - estimate.p_WO, -f.normal_W, mu});
   }
   return grasp;

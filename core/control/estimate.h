@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "core/common/finger_set.h"
 #include "core/common/hash.h"
 #include "core/control/control_parameters.h"
 #include "core/hand/kinematics.h"
@@ -58,9 +59,8 @@ class StateEstimator {
   Estimate estimate_;
 };
 
-/// The contacts of the fingers whose bit is set in `fingers`, positions relative to the estimated
-/// object centre, friction coefficient `mu`. Fingers that have not touched for 20 ticks are left
-/// out.
-Grasp GraspOf(const Estimate& estimate, unsigned fingers, double mu);
+/// The contacts of these fingers, positions relative to the estimated object centre, friction
+/// coefficient `mu`. Fingers that have not touched for 20 ticks are left out.
+Grasp GraspOf(const Estimate& estimate, FingerSet fingers, double mu);
 
 }  // namespace regrasp

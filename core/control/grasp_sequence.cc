@@ -20,13 +20,14 @@ void GraspSequence::Start(const Estimate& estimate) {
   touched_.fill(false);
 }
 
-void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed,
-                           const Vector3d& gravity_W, const ControlParameters& parameters,
+void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
                            HybridController* controller, FingerTasks* tasks) {
-  const int num_fingers = hand_->num_fingers();
+  const Estimate& estimate = tick.estimate;
+  const ControlParameters& parameters = tick.control;
+  const int num_fingers = tick.hand.num_fingers();
   tasks->resize(num_fingers);
   ++ticks_;
-  const double time = ticks_ * dt_;
+  const double time = ticks_ * tick.dt;
 
   if (phase_ == Phase::kClose) {
     const double travel = (q_closed - q_start_).cwiseAbs().maxCoeff();
@@ -48,11 +49,11 @@ void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed
         if (task.mode != FingerMode::kReach) task.p_target_W = f.p_WF;
         task.mode = FingerMode::kReach;
         task.v_target_W = kSearchSpeed * way.normalized();
-        task.p_target_W += task.v_target_W * dt_;
+        task.p_target_W += task.v_target_W * tick.dt;
         continue;
       }
       task.mode = FingerMode::kPosture;
-      const std::vector<int>& joints = hand_->fingers[i].joints;
+      const std::vector<int>& joints = tick.hand.fingers[i].joints;
       task.q_target.resize(static_cast<Eigen::Index>(joints.size()));
       for (std::size_t k = 0; k < joints.size(); ++k)
         task.q_target[k] = q_start_[joints[k]] + s * (q_closed[joints[k]] - q_start_[joints[k]]);
@@ -63,7 +64,7 @@ void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed
     if (all || (late && touched >= 3)) {
       phase_ = Phase::kGrip;
       ticks_ = 0;
-      controller->StartHolding(estimate, gravity_W, parameters);
+      controller->StartHolding(estimate, tick.gravity_W, parameters);
     } else if (late) {
       phase_ = Phase::kFailed;
     }
@@ -87,7 +88,7 @@ void GraspSequence::Update(const Estimate& estimate, const JointVector& q_closed
     progress_ = 0.6 + 0.2 * ramp;
     // The stand-in holds the object: restarting keeps the integrals and the reference from winding
     // up.
-    controller->wrench().Start(estimate, gravity_W, parameters);
+    controller->wrench().Start(estimate, tick.gravity_W, parameters);
     if (time > parameters.grip_ramp_s + parameters.stand_in_release_s) {
       phase_ = Phase::kAlone;
       ticks_ = 0;

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "core/control/control_tick.h"
 #include "core/control/hybrid_controller.h"
 
 namespace regrasp {
@@ -20,11 +21,9 @@ class GraspSequence {
     kFailed,  ///< fewer than three fingers touched
   };
 
-  explicit GraspSequence(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {}
   void Start(const Estimate& estimate);
   /// One tick: writes one task per finger. Starts the holding controller when it grips.
-  void Update(const Estimate& estimate, const JointVector& q_closed, const Vector3d& gravity_W,
-              const ControlParameters& parameters, HybridController* controller,
+  void Update(const ControlTick& tick, const JointVector& q_closed, HybridController* controller,
               FingerTasks* tasks);
 
   Phase phase() const { return phase_; }
@@ -35,8 +34,6 @@ class GraspSequence {
   void AddTo(StateHasher* hasher) const;
 
  private:
-  const HandModel* hand_;
-  double dt_;
   Phase phase_ = Phase::kIdle;
   int ticks_ = 0;  // in this phase
   double progress_ = 0;

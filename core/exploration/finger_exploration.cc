@@ -53,17 +53,19 @@ void FingerExploration::EndSlide(const Estimate& estimate, HybridController* con
   EnterPhase(Phase::kReload);
 }
 
-void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
-                               const ControlParameters& control,
-                               const ExplorationParameters& parameters, double load_margin_without,
-                               double dt, HybridController* controller, FingerTasks* tasks) {
+void FingerExploration::Update(const ControlTick& tick, HybridController* controller,
+                               FingerTasks* tasks) {
+  const Estimate& estimate = tick.estimate;
+  const ControlParameters& control = tick.control;
+  const ExplorationParameters& parameters = tick.exploration;
+  const double dt = tick.dt;
   slide_began_ = slide_ended_ = false;
   if (phase_ == Phase::kIdle || phase_ == Phase::kDone) return;
   const FingerEstimate& finger = estimate.fingers[request_.finger];
   FingerTask& task = (*tasks)[request_.finger];
   if (phase_ == Phase::kUnload && ticks_ == 0) {
     // What the finger drags on the object must stay small against what the others can carry.
-    slide_force_ = std::clamp(kForceShare * load_margin_without,
+    slide_force_ = std::clamp(kForceShare * tick.margins.without[request_.finger],
                               kLeastForce * parameters.normal_force, parameters.normal_force);
   }
   const double ramp = std::min(1.0, ++ticks_ * dt / std::max(dt, parameters.transfer_s));
@@ -87,15 +89,16 @@ void FingerExploration::Update(const HandModel& hand, const Estimate& estimate, 
     return;
   }
 
-  const ObjectiveValue objective = Objective(request_.criterion, request_.finger, grasp, estimate,
-                                             control, parameters.stability_weight, on_stability_);
+  const ObjectiveValue objective =
+      Objective(request_.criterion, request_.finger, tick.grasp, estimate, control,
+                parameters.stability_weight, on_stability_);
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   task.mode = FingerMode::kSlide;
   task.force = slide_force_;
   task.v_W.setZero();
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
-  FindWalls(hand, estimate, request_.finger, parameters, &input.walls);
+  FindWalls(tick.hand, estimate, request_.finger, parameters, &input.walls);
 
   if (phase_ == Phase::kSettle) {
     if (stop_) {

@@ -2,6 +2,7 @@
 
 /// One finger explores while the others hold: load transfer, Algorithm 1, and back into the grasp.
 
+#include "core/control/control_tick.h"
 #include "core/control/hybrid_controller.h"
 #include "core/exploration/best_contact.h"
 #include "core/exploration/objective.h"
@@ -40,13 +41,9 @@ class FingerExploration {
   void Start(const Request& request);
   /// Ends sliding at the next tick and goes on to kReload.
   void Stop();
-  /// One tick; changes the tasks of `request.finger` only. `grasp`: bits of the fingers that form
-  /// the grasp, this one included. load_margin_without: rho of the grasp without this finger [N];
-  /// where it is small the finger presses less than exploration.normal_force. dt [s].
-  void Update(const HandModel& hand, const Estimate& estimate, unsigned grasp,
-              const ControlParameters& control, const ExplorationParameters& parameters,
-              double load_margin_without, double dt, HybridController* controller,
-              FingerTasks* tasks);
+  /// One tick; changes the task of `request.finger` only. Where the load margin without this finger
+  /// is small it presses less than exploration.normal_force.
+  void Update(const ControlTick& tick, HybridController* controller, FingerTasks* tasks);
 
   const Request& request() const { return request_; }
   Phase phase() const { return phase_; }

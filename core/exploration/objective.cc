@@ -23,7 +23,7 @@ std::string_view Name(Criterion criterion) {
   return "";
 }
 
-double GraspStability(const Estimate& estimate, unsigned fingers,
+double GraspStability(const Estimate& estimate, FingerSet fingers,
                       const ControlParameters& parameters) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
   const SingularMeasures m =
@@ -38,7 +38,7 @@ double GraspStability(const Estimate& estimate, unsigned fingers,
   }
 }
 
-ObjectiveValue Objective(Criterion criterion, int finger, unsigned fingers,
+ObjectiveValue Objective(Criterion criterion, int finger, FingerSet fingers,
                          const Estimate& estimate, const ControlParameters& parameters,
                          double stability_weight, bool was_on_stability) {
   const double manipulability = estimate.fingers[finger].manipulability;

@@ -19,15 +19,15 @@ struct ObjectiveValue {
   bool on_stability = false;  ///< kSwitched: stability is what counts at present
 };
 
-/// Stability of the grasp by the fingers whose bit is set in `fingers`: the measure selected by
+/// Stability of the grasp by `fingers`: the measure selected by
 /// `parameters.stability_measure` from sensed contacts, torques divided by the estimated object
 /// scale. (kEpsilon is too slow for every tick: it falls back to the smallest singular value here.)
-double GraspStability(const Estimate& estimate, unsigned fingers,
+double GraspStability(const Estimate& estimate, FingerSet fingers,
                       const ControlParameters& parameters);
 
 /// phi of `finger`, in the grasp by `fingers` (which includes it). `was_on_stability`: result of
 /// the previous call; kSwitched returns to manipulability only 5 % above the threshold.
-ObjectiveValue Objective(Criterion criterion, int finger, unsigned fingers,
+ObjectiveValue Objective(Criterion criterion, int finger, FingerSet fingers,
                          const Estimate& estimate, const ControlParameters& parameters,
                          double stability_weight, bool was_on_stability);
 

@@ -6,7 +6,6 @@
 namespace regrasp {
 namespace {
 
-constexpr double kMarginFilter_s = 0.05;
 constexpr double kRecoverLimit_s = 2.0;
 constexpr double kRecovered = 0.5;        // of the limits at which a regrasp is broken off
 constexpr double kSecondThought_s = 0.3;  // a refusal stands when the margin has been low so long
@@ -49,21 +48,14 @@ std::string_view Name(GaitPhase phase) {
   return "";
 }
 
-void FingerGait::Start(const Request& request, const HandModel& hand, const Estimate& estimate,
-                       const ObjectWrench& wrench, unsigned fingers) {
+void FingerGait::Start(const Request& request, const ControlTick& tick,
+                       const ObjectWrench& wrench) {
   *this = FingerGait();
   request_ = request;
   sign_ = request.angle_rad < 0 ? -1.0 : 1.0;
-  fingers_ = fingers;
-  order_ = MakeGaitOrder(hand, estimate, fingers);
-  home_.p_WO = wrench.p_ref();
-  for (int i = 0; i < hand.num_fingers(); ++i) {
-    const FingerEstimate& f = estimate.fingers[i];
-    home_.p_OC[i] = f.p_WC - wrench.p_ref();
-    home_.manipulability[i] = f.manipulability;
-    home_stance_.push_back({home_.p_OC[i], f.p_WF - wrench.p_ref(), f.normal_W});
-  }
-  first_stance_ = home_stance_;
+  order_ = MakeGaitOrder(tick.hand, tick.estimate, tick.grasp);
+  home_ = MakeHome(tick.estimate, wrench);
+  first_stance_ = home_.stance;
   Enter(GaitPhase::kStance);
 }
 
@@ -80,33 +72,29 @@ void FingerGait::Enter(GaitPhase phase) {
   happened_.changed = true;
 }
 
-void FingerGait::SearchStance(const Estimate& estimate, const Vector3d& weight,
-                              const ControlParameters& control, const GaitParameters& parameters) {
+void FingerGait::SearchStance(const ControlTick& tick) {
+  const ControlParameters& control = tick.control;
   if (ticks_ == 1) {
     const int opposing = order_.empty() ? -1 : order_.back().finger;
     const int leaves = request_.make_room_for >= 0 ? request_.make_room_for : opposing;
-    margin_wanted_ = std::max(parameters.margin_wanted, kWantMore * margin_wanted_);
-    search_.Start(first_stance_, home_stance_, fingers_, leaves, parameters.max_shift,
+    margin_wanted_ = std::max(tick.gait.margin_wanted, kWantMore * margin_wanted_);
+    search_.Start(first_stance_, home_.stance, tick.grasp, leaves, tick.gait.max_shift,
                   request_.seed + static_cast<std::uint64_t>(searches_++));
   }
   if (ticks_ % kSearchTicks == 0)
-    search_.Step(weight, control.friction_estimate, estimate.object_scale,
-                 control.max_normal_force);
+    search_.Step(control.mass_estimate * tick.gravity_W, control.friction_estimate,
+                 tick.estimate.object_scale, control.max_normal_force);
   if (search_.margin() < margin_wanted_ && search_.evaluations() < kSearchLimit) return;
-  home_stance_ = search_.stance();
-  for (std::size_t i = 0; i < home_stance_.size(); ++i) home_.p_OC[i] = home_stance_[i].p_OC;
-  waiting_ = fingers_;
-  if (request_.make_room_for >= 0) waiting_ &= ~(1u << request_.make_room_for);
+  home_.stance = search_.stance();
+  waiting_ = tick.grasp.without(request_.make_room_for);
   Enter(GaitPhase::kChoose);
 }
 
-void FingerGait::Remember(int finger, const Estimate& estimate, const ObjectWrench& wrench,
-                          const GaitParameters& parameters) {
-  const Vector3d shift =
-      estimate.fingers[finger].p_WC - wrench.p_ref() - HomeOf(finger, parameters).p_OC;
+void FingerGait::Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench) {
+  const Vector3d shift = tick.finger(finger).p_WC - wrench.p_ref() - HomeOf(finger, tick.gait).p_OC;
   Vector3d& found = found_[finger];
   found += kFoundShare * (shift - found);
-  const double limit = kInsideDisc * parameters.disc_radius;
+  const double limit = kInsideDisc * tick.gait.disc_radius;
   if (found.norm() > limit) found *= limit / found.norm();
   gradient_[finger] = regrasp_.algorithm().gradient_W();
 }
@@ -130,14 +118,15 @@ void FingerGait::EndMotion() {
     double& lead = lead_[finger];
     lead = std::min(kMostLead, lead + 0.5 * (manipulation_.length() - turned_in_cycle_));
   }
-  waiting_ = fingers_;
+  for (const GaitStep& step : order_) waiting_.add(step.finger);
   refused_finger_ = -1;
   sought_ = false;
 }
 
-double FingerGait::DiscShare(const GaitParameters& parameters) const {
+double FingerGait::DiscShare(const ControlTick& tick) const {
   if (order_.empty()) return 1;
-  const double margin = smooth_.without[order_.back().finger] - parameters.margin_min;
+  const GaitParameters& parameters = tick.gait;
+  const double margin = tick.margins.without[order_.back().finger] - parameters.margin_min;
   const double wanted = kFullDisc * parameters.margin_wanted - parameters.margin_min;
   return wanted > 0 ? std::clamp(margin / wanted, 0.0, 1.0) : 1.0;
 }
@@ -146,7 +135,7 @@ StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) c
   const double lead =
       request_.make_room_for >= 0 ? 0.0 : parameters.lead * parameters.step_rad + lead_[finger];
   const Quaterniond ahead = FromRotationVector(-sign_ * lead * request_.axis_W);
-  const StanceContact& first = home_stance_[finger];
+  const StanceContact& first = home_.stance[finger];
   return {ahead * first.p_OC, ahead * first.p_OF, ahead * first.normal_W};
 }
 
@@ -169,19 +158,18 @@ bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench,
   return happened_.error_position > position || happened_.error_rotation > rotation;
 }
 
-void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
-                      const ObjectWrench& wrench, const GaitParameters& parameters, double dt) {
+void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
+  const GaitParameters& parameters = tick.gait;
   const bool exploring =
       parameters.mode == static_cast<double>(GaitMode::kExploring) && request_.make_room_for < 0;
-  while (waiting_ != 0) {
+  while (!waiting_.empty()) {
     // The first of the table that waits, or the one farthest from its target.
     int pick = -1;
     double farthest = -1;
     for (std::size_t k = 0; k < order_.size(); ++k) {
       const int i = order_[k].finger;
-      if (!(waiting_ >> i & 1u)) continue;
-      const double distance =
-          (TargetOf(i, wrench, parameters).p_WC - estimate.fingers[i].p_WC).norm();
+      if (!waiting_.contains(i)) continue;
+      const double distance = (TargetOf(i, wrench, parameters).p_WC - tick.finger(i).p_WC).norm();
       if (pick >= 0 && (parameters.by_need == 0 || distance <= farthest)) continue;
       pick = static_cast<int>(k);
       farthest = distance;
@@ -189,16 +177,16 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
     if (pick < 0) break;
     const GaitStep& step = order_[pick];
     if ((!exploring || turned_before_ == 0) && farthest < parameters.skip_distance) {
-      waiting_ &= ~(1u << step.finger);
+      waiting_.remove(step.finger);
       continue;
     }
-    const bool refused = margins.without[step.finger] < parameters.margin_min;
+    const bool refused = tick.margins.without[step.finger] < parameters.margin_min;
     // The margin still remembers the finger before in the air.
-    if (refused && ticks_ * dt < kSecondThought_s) return;
-    waiting_ &= ~(1u << step.finger);
+    if (refused && ticks_ * tick.dt < kSecondThought_s) return;
+    waiting_.remove(step.finger);
     if (refused) {
       refused_finger_ = happened_.refused_finger = step.finger;
-      refused_margin_ = happened_.refused_margin = margins.without[step.finger];
+      refused_margin_ = happened_.refused_margin = tick.margins.without[step.finger];
       continue;
     }
     Regrasp::Request request;
@@ -213,16 +201,16 @@ void FingerGait::Next(const HandModel& hand, const Estimate& estimate, const Mar
       request.without = order_[pick + 1].finger;
     }
     request.gradient_W = gradient_[step.finger];
-    request.disc_share = DiscShare(parameters);
+    request.disc_share = DiscShare(tick);
     regrasp_.Start(request);
     happened_.regrasp_began = true;
     Enter(GaitPhase::kRegrasp);
     return;
   }
-  EndCycle(hand, parameters);
+  EndCycle(tick);
 }
 
-void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameters) {
+void FingerGait::EndCycle(const ControlTick& tick) {
   if (request_.make_room_for >= 0) {
     Enter(GaitPhase::kFinish);
     return;
@@ -235,44 +223,34 @@ void FingerGait::EndCycle(const HandModel& hand, const GaitParameters& parameter
   if (turned_before_ > 0) ++cycles_;
   idle_cycles_ = turned_in_cycle_ < kProgress ? idle_cycles_ + 1 : 0;
   if (idle_cycles_ <= kIdleCycles) {
-    StartMotion(parameters);
+    StartMotion(tick.gait);
     return;
   }
   if (refused_finger_ >= 0) {
     std::snprintf(error_, sizeof(error_),
                   "%s may not leave: the load margin without it is %.3f N, below %.3f N",
-                  hand.fingers[refused_finger_].name.c_str(), refused_margin_,
-                  parameters.margin_min);
+                  tick.hand.fingers[refused_finger_].name.c_str(), refused_margin_,
+                  tick.gait.margin_min);
   } else {
     const int finger = manipulation_.end_finger();
     std::snprintf(error_, sizeof(error_), "the object cannot turn further: %s%s%s",
                   Name(manipulation_.end()).data(), finger >= 0 ? " of " : "",
-                  finger >= 0 ? hand.fingers[finger].name.c_str() : "");
+                  finger >= 0 ? tick.hand.fingers[finger].name.c_str() : "");
   }
   Enter(GaitPhase::kFailed);
 }
 
-ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
-                                const Margins& margins, const Vector3d& gravity_W,
-                                const ControlParameters& control,
-                                const ExplorationParameters& exploration,
-                                const GaitParameters& parameters, double dt,
-                                HybridController* controller, FingerTasks* tasks) {
+ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* controller,
+                                FingerTasks* tasks) {
   happened_ = Happened();
   ObjectMotion motion;
   if (!active()) return motion;
   ++ticks_;
-  const double gain = have_margins_ ? dt / (kMarginFilter_s + dt) : 1.0;
-  have_margins_ = true;
-  smooth_.all += gain * (margins.all - smooth_.all);
-  for (std::size_t i = 0; i < margins.without.size(); ++i)
-    smooth_.without[i] += gain * (margins.without[i] - smooth_.without[i]);
-
-  for (int i = 0; i < hand.num_fingers(); ++i) {
-    if (!(fingers_ >> i & 1u) || i == finger()) continue;
+  const GaitParameters& parameters = tick.gait;
+  for (int i : tick.grasp.without(finger())) {
     FingerTask& task = (*tasks)[i];
     task.mode = FingerMode::kHold;
-    task.cap = control.max_normal_force;
+    task.cap = tick.control.max_normal_force;
     task.grip = parameters.grip_force;
   }
   const ObjectWrench& wrench = controller->wrench();
@@ -282,13 +260,12 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       if (stop_) {
         Enter(GaitPhase::kFinish);
       } else {
-        SearchStance(estimate, control.mass_estimate * gravity_W, control, parameters);
+        SearchStance(tick);
       }
       break;
 
     case GaitPhase::kObjectMotion:
-      motion = manipulation_.Update(hand, estimate, wrench, home_, fingers_, smooth_.all,
-                                    parameters, dt);
+      motion = manipulation_.Update(tick, wrench, home_);
       if (manipulation_.end() != LocalManipulation::End::kNone) {
         EndMotion();
         const bool there =
@@ -300,7 +277,7 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
     case GaitPhase::kSettle:
       if (stop_) {
         Enter(GaitPhase::kFinish);
-      } else if (ticks_ * dt >= parameters.settle_s) {
+      } else if (ticks_ * tick.dt >= parameters.settle_s) {
         Enter(GaitPhase::kChoose);
       }
       break;
@@ -309,29 +286,28 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
       if (stop_) {
         Enter(GaitPhase::kFinish);
       } else {
-        Next(hand, estimate, smooth_, wrench, parameters, dt);
+        Next(tick, wrench);
       }
       break;
 
     case GaitPhase::kRegrasp: {
       if (!regrasp_.aborted() &&
-          Disturbed(estimate, wrench, parameters.abort_position, parameters.abort_rotation)) {
+          Disturbed(tick.estimate, wrench, parameters.abort_position, parameters.abort_rotation)) {
         regrasp_.Abort();
         happened_.aborted = true;
       }
       const Regrasp::Phase before = regrasp_.phase();
       const int finger = regrasp_.request().finger;
-      regrasp_.Update(hand, estimate, TargetOf(finger, wrench, parameters), fingers_, control,
-                      exploration, parameters, dt, controller, tasks);
+      regrasp_.Update(tick, TargetOf(finger, wrench, parameters), controller, tasks);
       happened_.changed |= regrasp_.phase() != before;
       happened_.explore_began = regrasp_.explore_began();
       happened_.explore_ended = regrasp_.explore_ended();
-      if (happened_.explore_ended) Remember(finger, estimate, wrench, parameters);
+      if (happened_.explore_ended) Remember(finger, tick, wrench);
       if (regrasp_.active()) break;
       happened_.regrasp_ended = true;
       if (regrasp_.lost()) {
         std::snprintf(error_, sizeof(error_), "%s found no surface to stand on",
-                      hand.fingers[finger].name.c_str());
+                      tick.hand.fingers[finger].name.c_str());
         Enter(GaitPhase::kFailed);
       } else if (stop_) {
         Enter(GaitPhase::kFinish);
@@ -347,15 +323,15 @@ ObjectMotion FingerGait::Update(const HandModel& hand, const Estimate& estimate,
     case GaitPhase::kRecover:
       if (stop_) {
         Enter(GaitPhase::kFinish);
-      } else if (!Disturbed(estimate, wrench, kRecovered * parameters.abort_position,
+      } else if (!Disturbed(tick.estimate, wrench, kRecovered * parameters.abort_position,
                             kRecovered * parameters.abort_rotation) ||
-                 ticks_ * dt > kRecoverLimit_s) {
+                 ticks_ * tick.dt > kRecoverLimit_s) {
         Enter(GaitPhase::kChoose);
       }
       break;
 
     case GaitPhase::kFinish:
-      if (stop_ || ticks_ * dt >= kFinish_s) Enter(GaitPhase::kDone);
+      if (stop_ || ticks_ * tick.dt >= kFinish_s) Enter(GaitPhase::kDone);
       break;
 
     case GaitPhase::kIdle:
@@ -374,19 +350,17 @@ void FingerGait::AddTo(StateHasher* hasher) const {
   hasher->Add(request_.angle_rad);
   hasher->Add(request_.axis_W);
   hasher->Add(request_.make_room_for);
-  hasher->Add(fingers_);
-  hasher->Add(waiting_);
+  hasher->Add(waiting_.bits());
   hasher->Add(turned_before_);
   hasher->Add(turned_in_cycle_);
   hasher->Add(cycles_);
   hasher->Add(regrasps_);
   hasher->Add(idle_cycles_);
-  for (double margin : smooth_.without) hasher->Add(margin);
   search_.AddTo(hasher);
   for (const Vector3d& found : found_) hasher->Add(found);
   for (const Vector3d& gradient : gradient_) hasher->Add(gradient);
   for (double lead : lead_) hasher->Add(lead);
-  for (const StanceContact& contact : home_stance_) hasher->Add(contact.p_OF);
+  for (const StanceContact& contact : home_.stance) hasher->Add(contact.p_OF);
   hasher->Add(margin_wanted_);
   hasher->Add(sought_);
   manipulation_.AddTo(hasher);

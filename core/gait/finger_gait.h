@@ -36,11 +36,6 @@ class FingerGait {
     /// >= 0: no rotation; the others shift their contacts until this finger may leave (S_F).
     int make_room_for = -1;
   };
-  /// Load margins from sensed contacts [N].
-  struct Margins {
-    double all = 0;
-    std::array<double, kMaxFingers> without{};
-  };
   /// What happened in the last Update.
   struct Happened {
     bool changed = false;       ///< phase, finger or phase of the regrasp
@@ -51,16 +46,12 @@ class FingerGait {
     bool regrasp_began = false, explore_began = false, explore_ended = false, regrasp_ended = false;
   };
 
-  /// `fingers`: bits of the fingers of the grasp. Their present contacts are the gait's first ones.
-  void Start(const Request& request, const HandModel& hand, const Estimate& estimate,
-             const ObjectWrench& wrench, unsigned fingers);
+  /// The present contacts are the gait's first ones.
+  void Start(const Request& request, const ControlTick& tick, const ObjectWrench& wrench);
   /// All fingers into a hold, at once; then kDone.
   void Stop();
-  /// One tick: sets every task, returns the object's motion. dt [s].
-  ObjectMotion Update(const HandModel& hand, const Estimate& estimate, const Margins& margins,
-                      const Vector3d& gravity_W, const ControlParameters& control,
-                      const ExplorationParameters& exploration, const GaitParameters& parameters,
-                      double dt, HybridController* controller, FingerTasks* tasks);
+  /// One tick: sets the task of every finger of the grasp, returns the object's motion.
+  ObjectMotion Update(const ControlTick& tick, HybridController* controller, FingerTasks* tasks);
 
   GaitPhase phase() const { return phase_; }
   bool active() const {
@@ -87,23 +78,20 @@ class FingerGait {
   double manipulation_turned() const {
     return phase_ == GaitPhase::kObjectMotion ? manipulation_.travelled() : 0.0;
   }
-  void SearchStance(const Estimate& estimate, const Vector3d& weight,
-                    const ControlParameters& control, const GaitParameters& parameters);
-  void Remember(int finger, const Estimate& estimate, const ObjectWrench& wrench,
-                const GaitParameters& parameters);
+  void SearchStance(const ControlTick& tick);
+  void Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench);
   void StartMotion(const GaitParameters& parameters);
   void EndMotion();
   /// Picks the next finger that shall and may leave, or starts the next object motion.
-  void Next(const HandModel& hand, const Estimate& estimate, const Margins& margins,
-            const ObjectWrench& wrench, const GaitParameters& parameters, double dt);
-  void EndCycle(const HandModel& hand, const GaitParameters& parameters);
+  void Next(const ControlTick& tick, const ObjectWrench& wrench);
+  void EndCycle(const ControlTick& tick);
   /// Where the finger comes back to, from the object reference: its first contact, turned back.
   StanceContact HomeOf(int finger, const GaitParameters& parameters) const;
   Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench,
                            const GaitParameters& parameters) const;
   /// How much of the exploring disc is free: all of it while the grasp without the opposing finger
   /// has the load margin that is wanted, nothing where it has hardly the one that is needed.
-  double DiscShare(const GaitParameters& parameters) const;
+  double DiscShare(const ControlTick& tick) const;
   bool Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
                  double rotation);
 
@@ -112,13 +100,11 @@ class FingerGait {
   int ticks_ = 0;
   bool stop_ = false;
   double sign_ = 1;
-  unsigned fingers_ = 0;
   GaitOrder order_;
-  LocalManipulation::Home home_;
+  Home home_;            // where each finger comes back to
   Stance first_stance_;  // where the fingers touched when the rotation began
-  Stance home_stance_;   // where each finger comes back to
-  double margin_wanted_ =
-      0;  // of the stance search; raised when the opposing finger is refused [N]
+  // Of the stance search; raised when the opposing finger is refused [N].
+  double margin_wanted_ = 0;
   int searches_ = 0;
   StanceSearch search_;
   // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The
@@ -132,9 +118,7 @@ class FingerGait {
   std::array<double, kMaxFingers> lead_{};
   LocalManipulation manipulation_;
   Regrasp regrasp_;
-  Margins smooth_;  // margins, low-passed
-  bool have_margins_ = false;
-  unsigned waiting_ = 0;  // bits of the fingers that have not had their turn in this cycle
+  FingerSet waiting_;  // the fingers that have not had their turn in this cycle
   double turned_before_ = 0, turned_in_cycle_ = 0;
   int idle_cycles_ = 0;
   int refused_finger_ = -1;  // in this cycle

@@ -2,36 +2,29 @@
 
 namespace regrasp {
 
-int OpposingFinger(const Estimate& estimate, unsigned fingers) {
+int OpposingFinger(const Estimate& estimate, FingerSet fingers) {
+  if (fingers.size() < 2) return -1;
   Vector3d sum = Vector3d::Zero();
-  int count = 0;
-  for (std::size_t i = 0; i < estimate.fingers.size(); ++i) {
-    if (!(fingers >> i & 1u)) continue;
-    sum += estimate.fingers[i].normal_W;
-    ++count;
-  }
-  if (count < 2) return -1;
+  for (int i : fingers) sum += estimate.fingers[i].normal_W;
   int opposing = -1;
   double least = 0;
-  for (std::size_t i = 0; i < estimate.fingers.size(); ++i) {
-    if (!(fingers >> i & 1u)) continue;
+  for (int i : fingers) {
     const Vector3d& n = estimate.fingers[i].normal_W;
     const double along = n.dot(sum - n);
     if (opposing >= 0 && along >= least) continue;
-    opposing = static_cast<int>(i);
+    opposing = i;
     least = along;
   }
   return opposing;
 }
 
-GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, unsigned fingers) {
+GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, FingerSet fingers) {
   GaitOrder order;
   const int last = OpposingFinger(estimate, fingers);
-  unsigned left = fingers;
-  if (last >= 0) left &= ~(1u << last);
+  FingerSet left = fingers.without(last);
   const auto Add = [&](int finger) {
-    if (finger < 0 || !(left >> finger & 1u)) return;
-    left &= ~(1u << finger);
+    if (!left.contains(finger)) return;
+    left.remove(finger);
     order.push_back({finger, GaitObjective::kManipulability});
   };
   for (const GaitRow& row : kGaitTable)

@@ -35,9 +35,8 @@ inline constexpr std::array<GaitRow, 6> kGaitTable{{
 }};
 
 /// The finger whose contact normal points most against the sum of the others': the one without
-/// which the others can hold least. -1 with fewer than two touching fingers of the set `fingers`
-/// (bits).
-int OpposingFinger(const Estimate& estimate, unsigned fingers);
+/// which the others can hold least. -1 with fewer than two touching fingers of `fingers`.
+int OpposingFinger(const Estimate& estimate, FingerSet fingers);
 
 /// One step of a gait made for a hand.
 struct GaitStep {
@@ -48,7 +47,7 @@ using GaitOrder = FixedVector<GaitStep, kMaxFingers>;
 
 /// The table for this hand: its rows whose finger the hand has, then the hand's other fingers, then
 /// the opposing finger, which is always last; the finger before it maximises stability without it.
-/// Only fingers of the set `fingers`.
-GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, unsigned fingers);
+/// Only fingers of `fingers`.
+GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, FingerSet fingers);
 
 }  // namespace regrasp

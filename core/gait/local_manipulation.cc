@@ -47,55 +47,57 @@ void LocalManipulation::Start(const ObjectMotion& per_path, double length, doubl
   policy_ = policy;
 }
 
-LocalManipulation::End LocalManipulation::FindEnd(const HandModel& hand, const Estimate& estimate,
-                                                  const Home& home, unsigned fingers, double margin,
-                                                  const GaitParameters& parameters) {
-  limited_finger_ = -1;
+bool LocalManipulation::AtJointLimit(const ControlTick& tick, int finger,
+                                     const Vector3d& v_W) const {
   // A joint that moves less than this, per unit of path, may stand at its limit.
   const double least_rate = (turns() ? kMovesTurning : 0.0) + kMovesShifting * per_path_.v_W.norm();
-  for (int i = 0; i < hand.num_fingers(); ++i) {
-    if (!(fingers >> i & 1u)) continue;
-    const FingerEstimate& f = estimate.fingers[i];
-    end_finger_ = i;
-    const Vector3d v = per_path_.w_W.cross(f.p_WC - estimate.p_WO) + per_path_.v_W;
-    const Matrix3d inverse = (f.J * f.J.transpose() + 1e-6 * Matrix3d::Identity()).inverse();
-    const Vector3d along = inverse * v;
-    const auto& joints = hand.fingers[i].joints;
-    bool limited = false;
-    for (std::size_t k = 0; k < joints.size(); ++k) {
-      const double q = estimate.q[joints[k]];
-      const double rate = f.J.col(static_cast<Eigen::Index>(k)).dot(along);
-      const Joint& joint = hand.joints[joints[k]];
-      if ((q > joint.upper - parameters.limit_margin && rate > least_rate) ||
-          (q < joint.lower + parameters.limit_margin && rate < -least_rate))
-        limited = true;
-    }
-    if (limited) {
-      limited_finger_ = i;
-      at_limit_ |= 1u << i;
-      if (travelled_ == 0) at_limit_at_first_ |= 1u << i;
-      if (policy_ == AtLimit::kEnds && !(at_limit_at_first_ >> i & 1u)) return End::kJointLimit;
-    }
-    if (f.manipulability < parameters.min_manipulability * home.manipulability[i])
-      return End::kManipulability;
-    const Vector3d excursion = f.p_WC - home.p_WO - home.p_OC[i];
-    if (excursion.norm() > parameters.max_excursion && excursion.dot(v) > 0) return End::kExcursion;
+  const FingerEstimate& f = tick.finger(finger);
+  const Matrix3d inverse = (f.J * f.J.transpose() + 1e-6 * Matrix3d::Identity()).inverse();
+  const Vector3d along = inverse * v_W;
+  const auto& joints = tick.hand.fingers[finger].joints;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const double q = tick.estimate.q[joints[k]];
+    const double rate = f.J.col(static_cast<Eigen::Index>(k)).dot(along);
+    const Joint& joint = tick.hand.joints[joints[k]];
+    if ((q > joint.upper - tick.gait.limit_margin && rate > least_rate) ||
+        (q < joint.lower + tick.gait.limit_margin && rate < -least_rate))
+      return true;
   }
-  end_finger_ = -1;
-  return margin < parameters.margin_min ? End::kMargin : End::kNone;
+  return false;
 }
 
-ObjectMotion LocalManipulation::Update(const HandModel& hand, const Estimate& estimate,
-                                       const ObjectWrench& wrench, const Home& home,
-                                       unsigned fingers, double margin,
-                                       const GaitParameters& parameters, double dt) {
+LocalManipulation::End LocalManipulation::FindEnd(const ControlTick& tick, const Home& home) {
+  limited_finger_ = -1;
+  for (int i : tick.grasp) {
+    const FingerEstimate& f = tick.finger(i);
+    end_finger_ = i;
+    const Vector3d v = per_path_.w_W.cross(f.p_WC - tick.estimate.p_WO) + per_path_.v_W;
+    if (AtJointLimit(tick, i, v)) {
+      limited_finger_ = i;
+      at_limit_.add(i);
+      if (travelled_ == 0) at_limit_at_first_.add(i);
+      if (policy_ == AtLimit::kEnds && !at_limit_at_first_.contains(i)) return End::kJointLimit;
+    }
+    if (f.manipulability < tick.gait.min_manipulability * home.manipulability[i])
+      return End::kManipulability;
+    const Vector3d excursion = f.p_WC - home.p_WO - home.stance[i].p_OC;
+    if (excursion.norm() > tick.gait.max_excursion && excursion.dot(v) > 0) return End::kExcursion;
+  }
+  end_finger_ = -1;
+  return tick.margins.all < tick.gait.margin_min ? End::kMargin : End::kNone;
+}
+
+ObjectMotion LocalManipulation::Update(const ControlTick& tick, const ObjectWrench& wrench,
+                                       const Home& home) {
+  const Estimate& estimate = tick.estimate;
+  const double dt = tick.dt;
   ObjectMotion motion;
   if (end_ != End::kNone) return motion;
-  const End found = FindEnd(hand, estimate, home, fingers, margin, parameters);
+  const End found = FindEnd(tick, home);
   const double left = length_ - travelled_;
   const double e_p = (wrench.p_ref() - estimate.p_WO).norm();
   const double e_r = RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
-  const bool wait = e_p > parameters.lag_position || e_r > parameters.lag_rotation;
+  const bool wait = e_p > tick.gait.lag_position || e_r > tick.gait.lag_rotation;
   waited_ = wait ? waited_ + 1 : 0;
   double wanted = stop_ || wait ? 0.0 : speed_max_;
   wanted = std::min(wanted, std::sqrt(2.0 * acceleration_ * std::max(0.0, left)));
@@ -131,9 +133,9 @@ void LocalManipulation::AddTo(StateHasher* hasher) const {
   hasher->Add(travelled_);
   hasher->Add(speed_);
   hasher->Add(policy_);
-  hasher->Add(at_limit_);
+  hasher->Add(at_limit_.bits());
   hasher->Add(stop_);
-  hasher->Add(at_limit_at_first_);
+  hasher->Add(at_limit_at_first_.bits());
   hasher->Add(waited_);
   hasher->Add(end_);
 }

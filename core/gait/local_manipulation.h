@@ -4,11 +4,12 @@
 /// moves the reference of the object-level force control (core/control) and knows when it has
 /// reached its end.
 
-#include <array>
 #include <string_view>
 
+#include "core/control/control_tick.h"
 #include "core/control/hybrid_controller.h"
 #include "core/gait/gait_parameters.h"
+#include "core/gait/stance.h"
 
 namespace regrasp {
 
@@ -31,13 +32,6 @@ class LocalManipulation {
     kYields,  ///< its finger shall roll and slip; the motion ends when the object follows no more
   };
 
-  /// What the grasp looked like at first; the ends are judged against it.
-  struct Home {
-    Vector3d p_WO = Vector3d::Zero();          ///< object reference [m]
-    std::array<Vector3d, kMaxFingers> p_OC{};  ///< contact from that reference, in W axes [m]
-    std::array<double, kMaxFingers> manipulability{};  ///< [kManipulabilityUnit]
-  };
-
   /// A motion of the object along a straight path of length `length` (>= 0). `per_path`: its
   /// velocity per speed along the path. A turn: length in rad, w_W the unit axis through the
   /// object's centre. A shift: length in m, w_W zero, v_W a unit vector. Both at once: length in
@@ -46,24 +40,24 @@ class LocalManipulation {
              AtLimit policy);
   /// Slows down and ends with kStopped.
   void Stop() { stop_ = true; }
-  /// One tick: the motion of the object reference. `fingers`: bits of the holding fingers;
-  /// `margin`: load margin of their grasp [N]; dt [s].
-  ObjectMotion Update(const HandModel& hand, const Estimate& estimate, const ObjectWrench& wrench,
-                      const Home& home, unsigned fingers, double margin,
-                      const GaitParameters& parameters, double dt);
+  /// One tick, in which all fingers of the grasp hold: the motion of the object reference. `home`:
+  /// what the ends are judged against.
+  ObjectMotion Update(const ControlTick& tick, const ObjectWrench& wrench, const Home& home);
 
   End end() const { return end_; }
   int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
-  /// Bits of the fingers that have had a joint at a limit against which they would have moved.
-  unsigned at_limit() const { return at_limit_; }
+  /// The fingers that have had a joint at a limit against which they would have moved.
+  FingerSet at_limit() const { return at_limit_; }
   double length() const { return length_; }        ///< of the path [rad, or m for a shift]
   double travelled() const { return travelled_; }  ///< by the reference since Start, same unit
   double speed() const { return speed_; }          ///< along the path [1/s]
   void AddTo(StateHasher* hasher) const;
 
  private:
-  End FindEnd(const HandModel& hand, const Estimate& estimate, const Home& home, unsigned fingers,
-              double margin, const GaitParameters& parameters);
+  End FindEnd(const ControlTick& tick, const Home& home);
+  /// Whether a joint of the finger stands at a limit and would have to go on when its contact moves
+  /// with `v_W` per unit of path.
+  bool AtJointLimit(const ControlTick& tick, int finger, const Vector3d& v_W) const;
   bool turns() const { return !per_path_.w_W.isZero(0); }
 
   ObjectMotion per_path_;
@@ -71,11 +65,10 @@ class LocalManipulation {
   double travelled_ = 0, speed_ = 0;
   AtLimit policy_ = AtLimit::kEnds;
   bool stop_ = false;
-  unsigned at_limit_ = 0;
-  int limited_finger_ = -1;  // in this tick
-  unsigned at_limit_at_first_ =
-      0;            // bits of the fingers with a joint at its limit when the motion began
-  int waited_ = 0;  // ticks
+  FingerSet at_limit_;
+  FingerSet at_limit_at_first_;  // those with a joint at its limit when the motion began
+  int limited_finger_ = -1;      // in this tick
+  int waited_ = 0;               // ticks
   End end_ = End::kNone;
   int end_finger_ = -1;
 };

@@ -16,22 +16,17 @@ class ObjectMove {
     Vector3d rotation_W = Vector3d::Zero();  ///< rotation vector, norm at most pi [rad]
   };
 
-  /// `fingers`: bits of the fingers of the grasp. Offset and rotation are not both zero; both go
+  /// Offset and rotation are not both zero; both go
   /// along their whole way at the same time, at the speed of the slower one.
-  void Start(const Request& request, const HandModel& hand, const Estimate& estimate,
-             const ObjectWrench& wrench, unsigned fingers, const GaitParameters& parameters);
+  void Start(const Request& request, const ControlTick& tick, const ObjectWrench& wrench);
   /// Slows down, then comes to rest.
   void Stop() {
     stop_ = true;
     manipulation_.Stop();
   }
   /// One tick: sets the task of every finger of the grasp, returns the object's motion. Where the
-  /// motion ends early the object's reference becomes where it is. `margin`, `margin_without`: load
-  /// margins of the grasp, and without each finger [N]; dt [s].
-  ObjectMotion Update(const HandModel& hand, const Estimate& estimate, double margin,
-                      const std::array<double, kMaxFingers>& margin_without,
-                      const ControlParameters& control, const GaitParameters& parameters, double dt,
-                      HybridController* controller, FingerTasks* tasks);
+  /// motion ends early the object's reference becomes where it is.
+  ObjectMotion Update(const ControlTick& tick, HybridController* controller, FingerTasks* tasks);
 
   /// Moves, or comes to rest after its end.
   bool active() const { return active_; }
@@ -41,14 +36,13 @@ class ObjectMove {
   void AddTo(StateHasher* hasher) const;
 
  private:
+  /// Of the fingers at a limit the one that the grasp can best do without, or -1.
+  int YieldingFinger(const ControlTick& tick) const;
+
   bool active_ = false;
   bool stop_ = false;
-  unsigned fingers_ = 0;
   LocalManipulation manipulation_;
-  LocalManipulation::Home home_;
-  double margin_ = 0;  // low-passed, as the next [N]
-  std::array<double, kMaxFingers> margin_without_{};
-  bool have_margins_ = false;
+  Home home_;
   int rest_ticks_ = 0;  // since the end of the motion
 };
 

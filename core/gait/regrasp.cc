@@ -94,14 +94,14 @@ void Regrasp::Reach(const Vector3d& velocity, double dt, FingerTask* task) {
   task->v_target_W = velocity;
 }
 
-void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Target& target,
-                      unsigned grasp, const ControlParameters& control,
-                      const ExplorationParameters& exploration, const GaitParameters& parameters,
-                      double dt, FingerTask* task) {
-  const FingerEstimate& finger = estimate.fingers[request_.finger];
-  const unsigned fingers = request_.without >= 0 ? grasp & ~(1u << request_.without) : grasp;
-  const ObjectiveValue objective = Objective(request_.criterion, request_.finger, fingers, estimate,
-                                             control, exploration.stability_weight, on_stability_);
+void Regrasp::Explore(const ControlTick& tick, const Target& target, FingerTask* task) {
+  const ExplorationParameters& exploration = tick.exploration;
+  const GaitParameters& parameters = tick.gait;
+  const double dt = tick.dt;
+  const FingerEstimate& finger = tick.finger(request_.finger);
+  const ObjectiveValue objective =
+      Objective(request_.criterion, request_.finger, tick.grasp.without(request_.without),
+                tick.estimate, tick.control, exploration.stability_weight, on_stability_);
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   task->mode = FingerMode::kSlide;
@@ -109,7 +109,7 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
   task->v_W.setZero();
 
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
-  FindWalls(hand, estimate, request_.finger, exploration, &input.walls);
+  FindWalls(tick.hand, tick.estimate, request_.finger, exploration, &input.walls);
   const Vector3d out = TangentPart(finger.p_WC - target.p_WC, finger.normal_W);
   const double excess = out.norm() - request_.disc_share * parameters.disc_radius;
   if (excess > 0) input.walls.push_back({out.normalized(), kDiscReturn * excess, true});
@@ -157,13 +157,14 @@ void Regrasp::Explore(const HandModel& hand, const Estimate& estimate, const Tar
   }
 }
 
-void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Target& target,
-                     unsigned grasp, const ControlParameters& control,
-                     const ExplorationParameters& exploration, const GaitParameters& parameters,
-                     double dt, HybridController* controller, FingerTasks* tasks) {
+void Regrasp::Update(const ControlTick& tick, const Target& target, HybridController* controller,
+                     FingerTasks* tasks) {
+  const ControlParameters& control = tick.control;
+  const GaitParameters& parameters = tick.gait;
+  const double dt = tick.dt;
   explore_began_ = explore_ended_ = false;
   if (!active()) return;
-  const FingerEstimate& finger = estimate.fingers[request_.finger];
+  const FingerEstimate& finger = tick.finger(request_.finger);
   FingerTask& task = (*tasks)[request_.finger];
   ++ticks_;
   const double ramp = std::min(1.0, ticks_ * dt / std::max(dt, parameters.transfer_s));
@@ -246,14 +247,14 @@ void Regrasp::Update(const HandModel& hand, const Estimate& estimate, const Targ
     case Phase::kRecall:
     case Phase::kExplore:
     case Phase::kReturn:
-      Explore(hand, estimate, target, grasp, control, exploration, parameters, dt, &task);
+      Explore(tick, target, &task);
       break;
 
     case Phase::kReload: {
       const bool touching = finger.in_contact;
       if (ticks_ == 1) {
         cap_start_ = std::max(control.min_normal_force, finger.force);
-        if (request_.explore) controller->RestHere(estimate, request_.finger);
+        if (request_.explore) controller->RestHere(tick.estimate, request_.finger);
       }
       task.mode = FingerMode::kHold;
       const double grip = std::min(parameters.grip_force, control.max_normal_force);

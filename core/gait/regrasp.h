@@ -4,6 +4,7 @@
 /// way (a hop or a slide) to its target in the palm, Algorithm 1 there if wanted, and load transfer
 /// back.
 
+#include "core/control/control_tick.h"
 #include "core/control/hybrid_controller.h"
 #include "core/exploration/best_contact.h"
 #include "core/exploration/objective.h"
@@ -52,10 +53,8 @@ class Regrasp {
   void Start(const Request& request);
   /// Back into the grasp by the shortest way.
   void Abort();
-  /// One tick; changes the task of this finger only. `grasp`: bits of all fingers of the grasp.
-  void Update(const HandModel& hand, const Estimate& estimate, const Target& target, unsigned grasp,
-              const ControlParameters& control, const ExplorationParameters& exploration,
-              const GaitParameters& parameters, double dt, HybridController* controller,
+  /// One tick; changes the task of this finger only.
+  void Update(const ControlTick& tick, const Target& target, HybridController* controller,
               FingerTasks* tasks);
 
   const Request& request() const { return request_; }
@@ -75,10 +74,7 @@ class Regrasp {
  private:
   void Enter(Phase phase);
   void Reach(const Vector3d& velocity, double dt, FingerTask* task);
-  void Explore(const HandModel& hand, const Estimate& estimate, const Target& target,
-               unsigned grasp, const ControlParameters& control,
-               const ExplorationParameters& exploration, const GaitParameters& parameters,
-               double dt, FingerTask* task);
+  void Explore(const ControlTick& tick, const Target& target, FingerTask* task);
 
   Request request_;
   Phase phase_ = Phase::kIdle;

@@ -10,15 +10,7 @@ constexpr double kStep = 0.0015;  // standard deviation of a trial step per axis
 
 }  // namespace
 
-StanceContact Shifted(const StanceContact& contact, const Vector3d& step) {
-  const double radius = contact.p_OC.norm();
-  const Vector3d centre = contact.p_OC - radius * contact.normal_W;
-  const Quaterniond turn = FromRotationVector(contact.normal_W.cross(step) / radius);
-  return {centre + turn * (contact.p_OC - centre), centre + turn * (contact.p_OF - centre),
-          turn * contact.normal_W};
-}
-
-void StanceSearch::Start(const Stance& first, const Stance& stance, unsigned fingers, int without,
+void StanceSearch::Start(const Stance& first, const Stance& stance, FingerSet fingers, int without,
                          double max_shift, std::uint64_t seed) {
   *this = StanceSearch();
   first_ = first;
@@ -40,9 +32,7 @@ void StanceSearch::Step(const Vector3d& weight, double mu, double torque_scale, 
     }
   }
   Grasp grasp;
-  for (std::size_t i = 0; i < trial.size(); ++i)
-    if (fingers_ >> i & 1u && static_cast<int>(i) != without_)
-      grasp.push_back({trial[i].p_OC, -trial[i].normal_W, mu});
+  for (int i : fingers_.without(without_)) grasp.push_back({trial[i].p_OC, -trial[i].normal_W, mu});
   const double margin = LoadMargin({grasp.data(), grasp.size()}, weight, torque_scale, max_force);
   ++evaluations_;
   if (margin <= margin_) return;

@@ -11,16 +11,27 @@ constexpr double kReleasePullTime_s = 0.01;
 
 }  // namespace
 
-unsigned Session::Impl::GraspFingers() const {
-  unsigned bits = 0;
+FingerSet Session::Impl::GraspFingers() const {
+  FingerSet fingers;
   for (int i = 0; i < hand.num_fingers(); ++i)
-    if (tasks[i].mode != FingerMode::kPosture) bits |= 1u << i;
-  return bits;
+    if (tasks[i].mode != FingerMode::kPosture) fingers.add(i);
+  return fingers;
+}
+
+ControlTick Session::Impl::MakeTick() const {
+  return {hand,
+          estimator.estimate(),
+          GraspFingers(),
+          monitor.margins(),
+          parameters.gravity_W,
+          parameters.control,
+          parameters.exploration,
+          parameters.gait,
+          dt};
 }
 
 void Session::Impl::UpdateGrasp() {
-  grasp.Update(estimator.estimate(), q_closed, parameters.gravity_W, parameters.control,
-               &controller, &tasks);
+  grasp.Update(MakeTick(), q_closed, &controller, &tasks);
   job.progress = std::min(0.99, grasp.progress());
   if (world->stand_in() != grasp.needs_stand_in()) {
     world->SetStandIn(grasp.needs_stand_in());
@@ -66,23 +77,22 @@ void Session::Impl::StartExploration(const Command& command) {
   explore_request = {command.finger, command.criterion, command.estimator, command.seed,
                      command.max_cycles};
   Enter(SessionState::kExploring);
-  if (monitor.load_margin_without(command.finger) >= parameters.gait.margin_min) {
+  if (monitor.margins().without[command.finger] >= parameters.gait.margin_min) {
     exploration.Start(explore_request);
     return;
   }
   FingerGait::Request request;
   request.seed = seed;
   request.make_room_for = command.finger;
-  gait.Start(request, hand, estimator.estimate(), controller.wrench(), GraspFingers());
+  gait.Start(request, MakeTick(), controller.wrench());
 }
 
 void Session::Impl::MakeRoom() {
-  gait.Update(hand, estimator.estimate(), Margins(), parameters.gravity_W, parameters.control,
-              parameters.exploration, parameters.gait, dt, &controller, &tasks);
+  gait.Update(MakeTick(), &controller, &tasks);
   ReportGait();
   if (gait.active()) return;
   const int finger = explore_request.finger;
-  const double margin = monitor.load_margin_without(finger);
+  const double margin = monitor.margins().without[finger];
   if (gait.stopped()) {
     FinishJob(JobState::kCancelled, "");
   } else if (margin < parameters.gait.margin_min) {
@@ -106,9 +116,7 @@ void Session::Impl::UpdateExploration() {
     return;
   }
   const bool was_on_stability = exploration.on_stability();
-  exploration.Update(
-      hand, estimator.estimate(), GraspFingers(), parameters.control, parameters.exploration,
-      monitor.load_margin_without(exploration.request().finger), dt, &controller, &tasks);
+  exploration.Update(MakeTick(), &controller, &tasks);
   const int finger = exploration.request().finger;
   if (exploration.on_stability() != was_on_stability)
     Emit(EventKind::kCriterion, finger, exploration.on_stability(), "objective: %s",
@@ -160,13 +168,6 @@ void Session::Impl::UpdateExploration() {
   Enter(SessionState::kHolding);
 }
 
-FingerGait::Margins Session::Impl::Margins() const {
-  FingerGait::Margins margins;
-  margins.all = monitor.stability().load_margin;
-  for (int i = 0; i < hand.num_fingers(); ++i) margins.without[i] = monitor.load_margin_without(i);
-  return margins;
-}
-
 void Session::Impl::StartRotation(const Command& command) {
   FingerGait::Request request;
   request.angle_rad = command.angle_rad;
@@ -174,16 +175,14 @@ void Session::Impl::StartRotation(const Command& command) {
   request.axis_W = command.axis_W.normalized();
   request.speed_rad_s = command.speed_rad_s;
   request.seed = seed;
-  gait.Start(request, hand, estimator.estimate(), controller.wrench(), GraspFingers());
+  gait.Start(request, MakeTick(), controller.wrench());
   q_WO_start = world->state().q_WO;
   motion = ObjectMotion();
   Enter(SessionState::kRotating);
 }
 
 void Session::Impl::UpdateRotation() {
-  motion =
-      gait.Update(hand, estimator.estimate(), Margins(), parameters.gravity_W, parameters.control,
-                  parameters.exploration, parameters.gait, dt, &controller, &tasks);
+  motion = gait.Update(MakeTick(), &controller, &tasks);
   JudgeRotation();
   ReportGait();
   if (gait.active()) return;
@@ -198,17 +197,14 @@ void Session::Impl::UpdateRotation() {
 void Session::Impl::StartMove(const Command& command) {
   job.move.offset_m = command.offset_W;
   job.move.rotation_rad = command.rotation_W;
-  move.Start({command.offset_W, command.rotation_W}, hand, estimator.estimate(),
-             controller.wrench(), GraspFingers(), parameters.gait);
+  move.Start({command.offset_W, command.rotation_W}, MakeTick(), controller.wrench());
   p_WO_start = world->state().p_WO;
   q_WO_start = world->state().q_WO;
   Enter(SessionState::kMoving);
 }
 
 void Session::Impl::UpdateMove() {
-  const FingerGait::Margins margins = Margins();
-  motion = move.Update(hand, estimator.estimate(), margins.all, margins.without, parameters.control,
-                       parameters.gait, dt, &controller, &tasks);
+  motion = move.Update(MakeTick(), &controller, &tasks);
   JudgeMove();
   if (move.active()) return;
   const bool stopped = move.stopped() && !job.move.reached;

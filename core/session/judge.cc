@@ -147,9 +147,8 @@ double Session::Impl::TruePhiOf(int finger) {
   const Regrasp& r = gait.regrasp();
   if (r.request().criterion != Criterion::kStability && !r.on_stability())
     return judge.estimate().fingers[finger].manipulability;
-  const unsigned all = GraspFingers();
-  const unsigned fingers = r.request().without >= 0 ? all & ~(1u << r.request().without) : all;
-  return GraspStability(judge.estimate(), fingers, parameters.control);
+  return GraspStability(judge.estimate(), GraspFingers().without(r.request().without),
+                        parameters.control);
 }
 
 void Session::Impl::ReportGait() {

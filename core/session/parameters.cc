@@ -31,6 +31,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"control.limit_margin", "rad", 0, 0.5, 1, "Distance from a joint limit at which a spring begins to push back.", kOurs, [](P& p) { return &p.control.limit_margin; }},
   {"control.limit_stiffness", "N m/rad", 0, 10, 1, "Stiffness of that spring.", kOurs, [](P& p) { return &p.control.limit_stiffness; }},
   {"control.free_stiffness", "N m/rad", 0.05, 3, 1, "Joint stiffness of a finger that touches nothing.", kMeasured, [](P& p) { return &p.control.free_stiffness; }},
+  {"control.margin_filter_s", "s", 0, 1, 1, "Time constant of the low pass on load margins.", kMeasured, [](P& p) { return &p.control.margin_filter_s; }},
   {"control.mass_estimate", "kg", 0, 1, 1, "Mass the controller assumes until its integral has learnt the weight.", kOurs, [](P& p) { return &p.control.mass_estimate; }},
   {"control.max_normal_force", "N", 0.5, 30, 1, "Upper bound of a finger's normal force.", kMeasured, [](P& p) { return &p.control.max_normal_force; }},
   {"control.min_normal_force", "N", 0, 2, 1, "Lower bound of a holding finger's normal force.", kMeasured, [](P& p) { return &p.control.min_normal_force; }},

@@ -5,8 +5,8 @@
 
 namespace regrasp {
 
-void QualityMonitor::Update(const Estimate& estimate, unsigned fingers, const Vector3d& gravity_W,
-                            const ControlParameters& parameters) {
+void QualityMonitor::Update(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
+                            const ControlParameters& parameters, double dt) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
   const double scale = estimate.object_scale;
   const SingularMeasures m = ComputeSingularMeasures({grasp.data(), grasp.size()}, scale);
@@ -21,6 +21,7 @@ void QualityMonitor::Update(const Estimate& estimate, unsigned fingers, const Ve
   } else {
     UpdateEpsilon(grasp, scale);
   }
+  SmoothMargins(dt / (parameters.margin_filter_s + dt));
 
   switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.stability_measure))) {
     case StabilityMeasure::kMinSingularValue:
@@ -38,17 +39,23 @@ void QualityMonitor::Update(const Estimate& estimate, unsigned fingers, const Ve
   }
 }
 
-void QualityMonitor::UpdateMargin(const Estimate& estimate, unsigned fingers,
+void QualityMonitor::UpdateMargin(const Estimate& estimate, FingerSet fingers,
                                   const Vector3d& gravity_W, const ControlParameters& parameters) {
   const Vector3d weight = parameters.mass_estimate * gravity_W;
   const int num_fingers = static_cast<int>(estimate.fingers.size());
   const bool whole = turn_ >= num_fingers;
-  const unsigned rest = whole ? fingers : fingers & ~(1u << turn_);
+  const FingerSet rest = whole ? fingers : fingers.without(turn_);
   const Grasp grasp = GraspOf(estimate, rest, parameters.friction_estimate);
   const double rho = LoadMargin({grasp.data(), grasp.size()}, weight, estimate.object_scale,
                                 parameters.max_normal_force);
   (whole ? stability_.load_margin : load_margin_without_[turn_]) = rho;
   turn_ = whole ? 0 : turn_ + 1;
+}
+
+void QualityMonitor::SmoothMargins(double gain) {
+  margins_.all += gain * (stability_.load_margin - margins_.all);
+  for (std::size_t i = 0; i < load_margin_without_.size(); ++i)
+    margins_.without[i] += gain * (load_margin_without_[i] - margins_.without[i]);
 }
 
 void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale) {
@@ -70,6 +77,8 @@ void QualityMonitor::AddTo(StateHasher* hasher) const {
   hasher->Add(turn_);
   hasher->Add(stability_.load_margin);
   for (double rho : load_margin_without_) hasher->Add(rho);
+  hasher->Add(margins_.all);
+  for (double rho : margins_.without) hasher->Add(rho);
   hasher->Add(stability_.epsilon);
   hasher->Add(epsilon_begun_);
   hasher->Add(epsilon_ticks_);

@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "core/control/estimate.h"
+#include "core/control/control_tick.h"
 #include "core/quality/epsilon.h"
 #include "core/session/frame.h"
 
@@ -20,23 +20,27 @@ class QualityMonitor {
   static constexpr int kEpsilonEdges = 8;      ///< of the friction pyramid
   static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
 
-  /// `fingers`: bits of the fingers that form the grasp. gravity_W [m/s²].
-  void Update(const Estimate& estimate, unsigned fingers, const Vector3d& gravity_W,
-              const ControlParameters& parameters);
+  /// `fingers`: those that form the grasp. gravity_W [m/s²]; dt [s].
+  void Update(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
+              const ControlParameters& parameters, double dt);
   /// `volume` stays 0: it is too slow for a tick (see WrenchHullVolume()). `epsilon` is of the
   /// grasp some 0.1 s ago.
   const StabilityFrame& stability() const { return stability_; }
-  /// rho of the grasp without this finger [N].
+  /// Load margins for the controllers: low-passed.
+  const LoadMargins& margins() const { return margins_; }
+  /// rho of the grasp without this finger, as last computed [N].
   double load_margin_without(int finger) const { return load_margin_without_[finger]; }
   void AddTo(StateHasher* hasher) const;
 
  private:
-  void UpdateMargin(const Estimate& estimate, unsigned fingers, const Vector3d& gravity_W,
+  void UpdateMargin(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
                     const ControlParameters& parameters);
+  void SmoothMargins(double gain);
   void UpdateEpsilon(const Grasp& grasp, double torque_scale);
 
   StabilityFrame stability_;
   std::array<double, kMaxFingers> load_margin_without_{};
+  LoadMargins margins_;
   int tick_ = 0;  // counts up to kMarginInterval
   int turn_ = 0;  // whose load margin comes next; the number of fingers: the whole grasp's
   EpsilonSolver epsilon_;

@@ -37,8 +37,7 @@ Session::Impl::Impl(SessionConfig c)
       object(std::make_shared<const ObjectModel>(config.model.object)),
       estimator(hand, dt),
       judge(hand, dt),
-      controller(hand, dt),
-      grasp(hand, dt) {
+      controller(hand, dt) {
   Build(config.seed);
 }
 
@@ -57,7 +56,8 @@ void Session::Impl::Tick() {
   if (tick % kJudgeInterval == 0) LookAtTruth();
   times.sense_s = clock.Lap();
 
-  monitor.Update(estimator.estimate(), GraspFingers(), parameters.gravity_W, parameters.control);
+  monitor.Update(estimator.estimate(), GraspFingers(), parameters.gravity_W, parameters.control,
+                 dt);
   WatchContacts();
   WatchDrop();
   if (push_until >= 0 && tick >= push_until) {

@@ -66,13 +66,14 @@ struct Session::Impl {
   }
 
   // activities.cc: what the hand does, one Update a tick
-  unsigned GraspFingers() const;
+  FingerSet GraspFingers() const;
+  /// What the controllers of this tick work on.
+  ControlTick MakeTick() const;
   /// Algorithm 1; before it, where the load margin without the finger is too small, the other
   /// fingers shift until it may leave.
   void StartExploration(const Command& command);
   void MakeRoom();
   void UpdateExploration();
-  FingerGait::Margins Margins() const;
   void StartRotation(const Command& command);
   void UpdateRotation();
   void StartMove(const Command& command);

@@ -36,7 +36,7 @@ void Session::Impl::Build(std::uint64_t new_seed) {
   estimator.Reset();
   judge.Reset();
   controller = HybridController(hand, dt);
-  grasp = GraspSequence(hand, dt);
+  grasp = GraspSequence();
   exploration = FingerExploration();
   explore_request = {};
   gait = FingerGait();

@@ -143,7 +143,7 @@ TEST_F(StateEstimatorTest, ObjectScaleIsTheMeanDistanceOfTheContacts) {
 
 TEST_F(StateEstimatorTest, GraspOfTakesTheFingersAskedFor) {
   const Estimate e = TouchingEstimate(hand_, q_);
-  const Grasp grasp = GraspOf(e, 0b10010, 0.5);
+  const Grasp grasp = GraspOf(e, {1, 4}, 0.5);
   ASSERT_EQ(grasp.size(), 2u);
   EXPECT_EQ(grasp[0].position, e.fingers[1].p_WC - e.p_WO);
   EXPECT_EQ(grasp[1].inward_normal, -e.fingers[4].normal_W);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/exploration/exploration_parameters.h"
+#include "core/gait/gait_parameters.h"
 #include "tests/unit/control/held_sphere.h"
 
 namespace regrasp {
@@ -24,8 +26,7 @@ class GraspSequenceTest : public ::testing::Test {
     double progress = 0;
     for (ticks_ = 0; ticks_ < max_ticks; ++ticks_) {
       const Estimate& e = estimator.Update(reading, parameters_);
-      sequence_.Update(e, scenario_.scenario.q_closed, gravity_, parameters_, &controller_,
-                       &tasks_);
+      sequence_.Update(TickOf(e), scenario_.scenario.q_closed, &controller_, &tasks_);
       EXPECT_GE(sequence_.progress(), progress);  // never goes back
       progress = sequence_.progress();
       held_alone_ += !sequence_.needs_stand_in();
@@ -35,11 +36,18 @@ class GraspSequenceTest : public ::testing::Test {
     return false;
   }
 
+  ControlTick TickOf(const Estimate& e) const {
+    return {hand_, e, {}, margins_, gravity_, parameters_, exploration_, gait_, kDt};
+  }
+
   const LoadedScenario scenario_ = ShadowHand();
   const HandModel& hand_ = scenario_.hand;
   const Vector3d gravity_ = GraspGravity();
   const ControlParameters parameters_;
-  GraspSequence sequence_{hand_, kDt};
+  const ExplorationParameters exploration_;
+  const GaitParameters gait_;
+  const LoadMargins margins_;
+  GraspSequence sequence_;
   HybridController controller_{hand_, kDt};
   FingerTasks tasks_;
   int ticks_ = 0, held_alone_ = 0;
@@ -62,7 +70,7 @@ TEST_F(GraspSequenceTest, ThreeFingersAreEnoughTwoAreNot) {
   ASSERT_TRUE(Run(3, 20000));
   EXPECT_EQ(sequence_.phase(), Phase::kDone);
   EXPECT_EQ(tasks_[4].mode, FingerMode::kReach);  // never touched: takes no part
-  sequence_ = GraspSequence(hand_, kDt);
+  sequence_ = GraspSequence();
   held_alone_ = 0;
   ASSERT_TRUE(Run(2, 20000));
   EXPECT_EQ(sequence_.phase(), Phase::kFailed);
@@ -78,7 +86,7 @@ TEST_F(GraspSequenceTest, ClosesNoFasterThanItsSpeed) {
   sequence_.Start(e);
   FingerTasks before;
   for (int tick = 0; tick < 8000 && sequence_.phase() != Phase::kFailed; ++tick) {
-    sequence_.Update(e, scenario_.scenario.q_closed, gravity_, parameters_, &controller_, &tasks_);
+    sequence_.Update(TickOf(e), scenario_.scenario.q_closed, &controller_, &tasks_);
     if (tick > 0 && sequence_.phase() == Phase::kClose) {
       for (std::size_t i = 0; i < tasks_.size(); ++i)
         ASSERT_LE((tasks_[i].q_target - before[i].q_target).cwiseAbs().maxCoeff(),

@@ -11,7 +11,7 @@
 namespace regrasp {
 namespace {
 
-constexpr unsigned kAll = 0b11111;
+constexpr FingerSet kAll = FingerSet::First(5);
 
 class ObjectiveTest : public ::testing::Test {
  protected:

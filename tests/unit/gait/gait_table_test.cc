@@ -47,7 +47,7 @@ TEST(GaitOrder, OfTheFiveFingeredHandIsTheTable) {
   const HandModel hand = HandWith({"first", "middle", "ring", "little", "thumb"});
   const Estimate estimate =
       Touching({{0.3, 1, 0}, {0.1, 1, 0}, {-0.1, 1, 0}, {-0.3, 1, 0}, {0, -1, 0}});
-  const GaitOrder order = MakeGaitOrder(hand, estimate, 0b11111);
+  const GaitOrder order = MakeGaitOrder(hand, estimate, FingerSet::First(5));
   const int expected[] = {3, 2, 1, 0, 4};
   ASSERT_EQ(order.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(order[k].finger, expected[k]);
@@ -57,7 +57,7 @@ TEST(GaitOrder, OfTheFiveFingeredHandIsTheTable) {
 TEST(GaitOrder, OpposingFingerComesLastWhateverItsName) {
   const HandModel hand = HandWith({"a", "b", "c"});
   const Estimate estimate = Touching({{0, -1, 0}, {0.3, 1, 0}, {-0.3, 1, 0}});
-  const GaitOrder order = MakeGaitOrder(hand, estimate, 0b111);
+  const GaitOrder order = MakeGaitOrder(hand, estimate, FingerSet::First(3));
   ASSERT_EQ(order.size(), 3u);
   EXPECT_EQ(order[0].finger, 1);
   EXPECT_EQ(order[1].finger, 2);
@@ -69,7 +69,7 @@ TEST(GaitOrder, LeavesOutFingersThatDoNotHold) {
   const HandModel hand = HandWith({"first", "middle", "ring", "little", "thumb"});
   const Estimate estimate =
       Touching({{0.3, 1, 0}, {0.1, 1, 0}, {-0.1, 1, 0}, {-0.3, 1, 0}, {0, -1, 0}});
-  const GaitOrder order = MakeGaitOrder(hand, estimate, 0b10101);
+  const GaitOrder order = MakeGaitOrder(hand, estimate, {0, 2, 4});
   ASSERT_EQ(order.size(), 3u);
   for (const GaitStep& step : order) EXPECT_TRUE(step.finger % 2 == 0);
 }
@@ -100,7 +100,7 @@ TEST(Stance, SearchRaisesTheMarginWithinItsBound) {
   }
   const Vector3d weight(0, 0, -0.785);
   StanceSearch search;
-  search.Start(stance, stance, 0b11111, 4, 0.006, 7);
+  search.Start(stance, stance, FingerSet::First(5), 4, 0.006, 7);
   search.Step(weight, 0.5, 0.025, 4.0);
   const double first = search.margin();
   for (int k = 0; k < 200; ++k) search.Step(weight, 0.5, 0.025, 4.0);

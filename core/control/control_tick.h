@@ -1,0 +1,41 @@
+#pragma once
+
+/// What every controller of one tick sees: the hand, the sensed state and the constants. One
+/// struct, made once a tick, so that the layers of the controller (grasp, exploration, gait) take
+/// the same few arguments.
+
+#include <array>
+
+#include "core/common/finger_set.h"
+#include "core/control/control_parameters.h"
+#include "core/control/estimate.h"
+#include "core/hand/hand_model.h"
+
+namespace regrasp {
+
+struct ExplorationParameters;
+struct GaitParameters;
+
+/// Load margins rho of the present grasp from sensed contacts, low-passed with
+/// control.margin_filter_s [N].
+struct LoadMargins {
+  double all = 0;                             ///< with all fingers of the grasp
+  std::array<double, kMaxFingers> without{};  ///< without one finger, by finger
+};
+
+/// References to what one tick works on; valid during that tick only.
+struct ControlTick {
+  const HandModel& hand;
+  const Estimate& estimate;
+  FingerSet grasp;  ///< the fingers that form the grasp
+  const LoadMargins& margins;
+  const Vector3d& gravity_W;  ///< [m/s²]
+  const ControlParameters& control;
+  const ExplorationParameters& exploration;
+  const GaitParameters& gait;
+  double dt;  ///< [s]
+
+  const FingerEstimate& finger(int i) const { return estimate.fingers[i]; }
+};
+
+}  // namespace regrasp
