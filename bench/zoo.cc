@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -22,6 +23,7 @@
 #include "core/common/random.h"
 #include "core/hand/scenario.h"
 #include "core/session/session.h"
+#include "core/session/shape_judge.h"
 
 using namespace regrasp;
 
@@ -48,6 +50,7 @@ struct Trial {
   int index = -1;
   bool done = false, dropped = false;
   double angle_deg = 0, time_s = 0, offset_mm = 0, tilt_deg = 0;
+  ShapeErrors shape;
   int slips = 0, refused = 0, regrasps = 0;
   char error[160] = {};
 };
@@ -121,6 +124,7 @@ Trial Run(const Options& o, SessionConfig config) {
   session.Apply(command);
   Advance(o.limit_s * o.turns);
   const RotateResult& r = job.rotate;
+  trial.shape = JudgeShape(session.felt_surface(), TrueSurface(session.config().model.object));
   trial.done = job.id != 0 && job.state == JobState::kDone;
   trial.dropped = r.dropped;
   trial.angle_deg = r.angle_rad * 180 / M_PI;
@@ -179,14 +183,15 @@ std::vector<Trial> RunAll(const Options& o) {
     const int pair = trial.index % per_setting;
     std::printf(
         "%-10s %-26s seed %llu %s %6.1f deg %6.1f s offset %5.2f mm tilt %4.1f deg "
-        "regrasps %d slips %d refused %d  %s\n",
+        "regrasps %d slips %d refused %d  felt %.2f rms %.2f bias %+.2f mm normals %.1f deg  %s\n",
         o.settings[trial.index / per_setting].name.c_str(), o.objects[pair / o.seeds].c_str(),
         static_cast<unsigned long long>(o.first + pair % o.seeds),
         trial.done      ? "done"
         : trial.dropped ? "DROP"
                         : "FAIL",
         trial.angle_deg, trial.time_s, trial.offset_mm, trial.tilt_deg, trial.regrasps, trial.slips,
-        trial.refused, trial.error);
+        trial.refused, trial.shape.touched, 1e3 * trial.shape.rms_m, 1e3 * trial.shape.mean_m,
+        trial.shape.normal_rad * 180 / M_PI, trial.error);
     std::fflush(stdout);
   }
   while (wait(nullptr) > 0) {
@@ -214,6 +219,7 @@ void Print(const Options& o, const std::vector<Trial>& trials) {
   for (std::size_t s = 0; s < o.settings.size(); ++s) {
     int done = 0, dropped = 0;
     double rate = 0, offset = 0, tilt = 0, slips = 0;
+    std::vector<double> rms;
     std::map<std::string, int> reasons;
     for (int k = 0; k < per_setting; ++k) {
       const Trial& t = trials[s * per_setting + k];
@@ -224,6 +230,7 @@ void Print(const Options& o, const std::vector<Trial>& trials) {
         ++reasons[Reason(t)];
         continue;
       }
+      rms.push_back(1e3 * t.shape.rms_m);
       rate += 60 * std::abs(t.angle_deg) / t.time_s;
       offset = std::max(offset, t.offset_mm);
       tilt = std::max(tilt, t.tilt_deg);
@@ -233,6 +240,10 @@ void Print(const Options& o, const std::vector<Trial>& trials) {
         "at most %.0f deg, %.1f slips a run\n",
         o.settings[s].name.c_str(), done, per_setting, dropped, rate / std::max(1, done), offset,
         tilt, slips / per_setting);
+    std::sort(rms.begin(), rms.end());
+    if (!rms.empty())
+      std::printf("  felt surface off by rms %.2f mm (median), %.2f mm (90 %% of the completed)\n",
+                  rms[rms.size() / 2], rms[rms.size() * 9 / 10]);
     for (const auto& [reason, count] : reasons) std::printf("  %3d %s\n", count, reason.c_str());
   }
   for (std::size_t a = 0; a < o.settings.size(); ++a)

@@ -22,6 +22,7 @@ struct ControlParameters {
   double margin_filter_s = 0.050;  ///< load margins
   double contact_from_normal =
       1;  ///< 1: contact point from the sensed normal and the fingertip's known shape
+  double fingertip_stiffness = 4000;  ///< how far a fingertip is pressed in per force [N/m]
   // Object wrench: PI law on the object pose.
   double position_stiffness = 200;      ///< [N/m]
   double position_integral = 300;       ///< [N/(m s)]

@@ -13,15 +13,15 @@ constexpr int kLostTicks = 20;  // a finger without contact for so many ticks ca
 double Gain(double dt, double time_constant) { return dt / (time_constant + dt); }
 
 /// The point of the fingertip's surface whose outward direction is -n_L, next to p_L: the tip is a
-/// capsule of known size, and 2 degrees of normal noise move the point far less than 1 mm of
-/// position noise. Links without a capsule keep p_L.
-Vector3d OnFingertip(const Link& tip, const Vector3d& p_L, const Vector3d& n_L) {
+/// capsule of known size, pressed in by `yield` [m], and 2 degrees of normal noise move the point
+/// far less than 1 mm of position noise. Links without a capsule keep p_L.
+Vector3d OnFingertip(const Link& tip, const Vector3d& p_L, const Vector3d& n_L, double yield) {
   for (const Shape& shape : tip.shapes) {
     if (shape.kind != Shape::Kind::kCapsule) continue;
     const Vector3d d = shape.b_L - shape.a_L;
     const double length2 = d.squaredNorm();
     const double s = length2 > 0 ? std::clamp((p_L - shape.a_L).dot(d) / length2, 0.0, 1.0) : 0.0;
-    return shape.a_L + s * d - shape.radius * n_L;
+    return shape.a_L + s * d - std::max(0.5 * shape.radius, shape.radius - yield) * n_L;
   }
   return p_L;
 }
@@ -80,7 +80,8 @@ const Estimate& StateEstimator::Update(const SensorReading& reading,
       const Vector3d n_L = filter.n_L.normalized();
       f.normal_W = X_WL.linear() * n_L;
       f.p_WC = X_WL * (parameters.contact_from_normal > 0
-                           ? OnFingertip(hand_->links[hand_->fingers[i].tip_link], filter.p_L, n_L)
+                           ? OnFingertip(hand_->links[hand_->fingers[i].tip_link], filter.p_L, n_L,
+                                         f.force / parameters.fingertip_stiffness)
                            : filter.p_L);
     } else {
       f.p_WC = f.p_WF;

@@ -21,6 +21,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   {"control.contact_filter_s", "s", 0, 1, 1, "Time constant of the low pass on contact points and normals, in the fingertip's frame.", kMeasured, [](P& p) { return &p.control.contact_filter_s; }},
   {"control.contact_from_normal", "", 0, 1, 1, "1: place a contact on the fingertip's known surface by its sensed normal; 0: trust the sensed position alone.", kMeasured, [](P& p) { return &p.control.contact_from_normal; }},
   {"control.drop_distance", "m", 0.005, 0.5, 1, "An object sensed this far from where control wants it counts as dropped.", kOurs, [](P& p) { return &p.control.drop_distance; }},
+  {"control.fingertip_stiffness", "N/m", 100, 1e9, 1, "A fingertip is pressed in by its normal force over this; places the contact on it.", "the hand's: docs/world.md", [](P& p) { return &p.control.fingertip_stiffness; }},
   {"control.force_filter_s", "s", 0, 1, 1, "Time constant of the low pass on contact forces.", kMeasured, [](P& p) { return &p.control.force_filter_s; }},
   {"control.force_integral_limit", "N", 0, 20, 1, "Largest change of the integrated object force from its start value, per axis.", kMeasured, [](P& p) { return &p.control.force_integral_limit; }},
   {"control.friction_estimate", "", 0.05, 1, 1, "Friction coefficient the force distribution counts on.", kMeasured, [](P& p) { return &p.control.friction_estimate; }},

@@ -56,6 +56,7 @@ void Session::Impl::Tick() {
   if (tick % kJudgeInterval == 0) LookAtTruth();
   times.sense_s = clock.Lap();
 
+  Feel();
   monitor.Update(estimator.estimate(), GraspFingers(), parameters.gravity_W, parameters.control,
                  dt);
   WatchContacts();
@@ -135,6 +136,7 @@ void Session::MeasureStages(bool on) {
 Session::StageTimes Session::stage_times() const { return impl_->times; }
 const RegraspRecord& Session::last_regrasp() const { return impl_->regrasp; }
 const WorldState& Session::truth() const { return impl_->world->state(); }
+const FeltSurface& Session::felt_surface() const { return impl_->felt; }
 const World& Session::world() const { return *impl_->world; }
 
 }  // namespace regrasp

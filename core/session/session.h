@@ -15,6 +15,7 @@
 #include "core/session/frame.h"
 #include "core/session/job.h"
 #include "core/session/parameters.h"
+#include "core/shape/felt_surface.h"
 #include "core/world/world.h"
 
 namespace regrasp {
@@ -80,6 +81,9 @@ class Session {
 
   /// The newest regrasp of a rotation; complete once its event has come.
   const RegraspRecord& last_regrasp() const;
+
+  /// The object's surface as felt since the last reset, by what the controller believes.
+  const FeltSurface& felt_surface() const;
 
   /// For tests and judges: the truth.
   const WorldState& truth() const;

@@ -65,6 +65,9 @@ struct Session::Impl {
     events.push_back(event);
   }
 
+  // feel.cc: the object's surface, from what the controller believes
+  void Feel();
+
   // activities.cc: what the hand does, one Update a tick
   FingerSet GraspFingers() const;
   /// What the controllers of this tick work on.
@@ -112,6 +115,7 @@ struct Session::Impl {
   const SensorReading* reading = nullptr;
   StateEstimator estimator;  // what the controller believes
   StateEstimator judge;      // the same from noise-free readings, never seen by the controller
+  FeltSurface felt;
   HybridController controller;
   GraspSequence grasp;
   FingerExploration exploration;

@@ -137,6 +137,7 @@ std::uint64_t Session::Impl::Hash() const {
   world->AddTo(&hasher);
   sensors->AddTo(&hasher);
   estimator.AddTo(&hasher);
+  felt.AddTo(&hasher);
   controller.AddTo(&hasher);
   grasp.AddTo(&hasher);
   exploration.AddTo(&hasher);

@@ -35,6 +35,7 @@ void Session::Impl::Build(std::uint64_t new_seed) {
   judge_sensors = std::make_unique<Sensors>(hand, dt, 0);
   estimator.Reset();
   judge.Reset();
+  felt.Reset();
   controller = HybridController(hand, dt);
   grasp = GraspSequence();
   exploration = FingerExploration();

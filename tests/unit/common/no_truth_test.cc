@@ -39,7 +39,7 @@ std::set<std::string> Sources(const fs::path& root, const std::string& folder) {
 TEST(NoTruth, ControllerReachesNeitherWorldNorSensors) {
   const fs::path root = REGRASP_SOURCE_DIR;
   int files = 0;
-  for (const char* folder : {"core/control", "core/exploration", "core/gait"}) {
+  for (const char* folder : {"core/control", "core/shape", "core/exploration", "core/gait"}) {
     for (const std::string& file : Sources(root, folder)) {
       ++files;
       std::set<std::string> reached;

@@ -1,0 +1,22 @@
+#include "core/session/session_impl.h"
+
+namespace regrasp {
+namespace {
+
+constexpr int kInterval = 5;           // ticks from one look at a finger to the next
+constexpr double kSettled_s = 0.040;   // the contact filters have followed
+constexpr double kLeastForce = 0.1;    // [N]
+constexpr double kMovingSpeed = 0.02;  // of the reference: the sensed pose lags behind [rad/s]
+
+}  // namespace
+
+void Session::Impl::Feel() {
+  if (tick % kInterval != 0 || motion.w_W.norm() > kMovingSpeed) return;
+  const Estimate& e = estimator.estimate();
+  const Quaterniond q_OW = e.q_WO.conjugate();
+  for (const FingerEstimate& f : e.fingers)
+    if (f.in_contact && f.force >= kLeastForce && f.ticks_in_contact * dt >= kSettled_s)
+      felt.Add(q_OW * (f.p_WC - e.p_WO), q_OW * f.normal_W);
+}
+
+}  // namespace regrasp

@@ -1,0 +1,44 @@
+#include "core/world/true_surface.h"
+
+#include <algorithm>
+
+namespace regrasp {
+
+TrueSurface::TrueSurface(const ObjectModel& object)
+    : kind_(object.kind),
+      radius_(object.radius),
+      half_length_(object.half_length),
+      half_extents_(object.half_extents) {
+  if (kind_ == ObjectModel::Kind::kMesh) mesh_.emplace(object.vertices_O, object.triangles);
+}
+
+TrueSurface::Nearest TrueSurface::At(const Vector3d& p) const {
+  switch (kind_) {
+    case ObjectModel::Kind::kSphere:
+      return {p.norm() - radius_, p.normalized()};
+    case ObjectModel::Kind::kCapsule: {
+      const Vector3d core(0, 0, std::clamp(p.z(), -half_length_, half_length_));
+      return {(p - core).norm() - radius_, (p - core).normalized()};
+    }
+    case ObjectModel::Kind::kBox: {
+      const Vector3d beyond = p.cwiseAbs() - half_extents_;
+      int axis = 0;
+      const double deepest = beyond.maxCoeff(&axis);
+      const Vector3d sign = p.cwiseSign();
+      if (deepest <= 0) return {deepest, sign[axis] * Vector3d::Unit(axis)};
+      const Vector3d out = beyond.cwiseMax(0.0);
+      return {out.norm(), out.cwiseProduct(sign).normalized()};
+    }
+    case ObjectModel::Kind::kMesh: {
+      constexpr double kAnywhere = 1.0;  // [m]
+      const auto closest = mesh_->ClosestToSegment(p, p, kAnywhere);
+      if (!closest) return {kAnywhere, Vector3d::UnitZ()};
+      const Vector3d gap = p - closest->p_OSurface;
+      const bool outside = gap.dot(closest->face_normal_O) > 0;
+      return {outside ? closest->distance : -closest->distance, closest->face_normal_O};
+    }
+  }
+  return {};
+}
+
+}  // namespace regrasp

@@ -1,0 +1,30 @@
+#pragma once
+
+/// The object's true surface, for judging what was felt of it.
+
+#include <optional>
+
+#include "core/hand/object_model.h"
+#include "core/world/surface_mesh.h"
+
+namespace regrasp {
+
+class TrueSurface {
+ public:
+  explicit TrueSurface(const ObjectModel& object);
+
+  struct Nearest {
+    double distance = 0;                    ///< signed, positive outside [m]
+    Vector3d normal_O = Vector3d::UnitZ();  ///< outward, of the surface there
+  };
+  /// The surface nearest to a point in O. Allocates nothing.
+  Nearest At(const Vector3d& p_O) const;
+
+ private:
+  ObjectModel::Kind kind_;
+  double radius_, half_length_;
+  Vector3d half_extents_;
+  std::optional<SurfaceMesh> mesh_;
+};
+
+}  // namespace regrasp
