@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 #include "daemon/daemon.h"
 
 namespace {

@@ -21,9 +21,9 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 #include "daemon/daemon.h"
-#include "daemon/json.h"
+#include "daemon/wire/json.h"
 
 namespace regrasp {
 namespace {

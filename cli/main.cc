@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "cli/complete.h"
-#include "cli/execute.h"
+#include "cli/commands/execute.h"
+#include "cli/grammar/complete.h"
 #include "core/protocol/standard_files.h"
 
 int main(int argc, char** argv) {

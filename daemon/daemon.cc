@@ -7,9 +7,9 @@
 #include "core/hand/scenario.h"
 #include "core/protocol/socket_path.h"
 #include "core/sensing/noise.h"
-#include "daemon/reload.h"
-#include "daemon/server.h"
-#include "daemon/service_manager.h"
+#include "daemon/config/reload.h"
+#include "daemon/server/server.h"
+#include "daemon/server/service_manager.h"
 
 namespace regrasp {
 namespace {

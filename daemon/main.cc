@@ -16,14 +16,14 @@
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
 #include "core/protocol/standard_files.h"
-#include "daemon/bench.h"
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 #include "daemon/daemon.h"
-#include "daemon/json.h"
-#include "daemon/manual.h"
-#include "daemon/protocol_page.h"
-#include "daemon/service.h"
-#include "daemon/socket.h"
+#include "daemon/loop/bench.h"
+#include "daemon/pages/manual.h"
+#include "daemon/pages/protocol_page.h"
+#include "daemon/requests/service.h"
+#include "daemon/server/socket.h"
+#include "daemon/wire/json.h"
 
 namespace regrasp {
 namespace {

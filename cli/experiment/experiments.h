@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "cli/context.h"
+#include "cli/client/context.h"
 #include "cli/experiment/plan.h"
 
 namespace regrasp::cli {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cli/print.h"
+#include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {

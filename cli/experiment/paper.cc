@@ -6,10 +6,10 @@
 #include <ctime>
 #include <filesystem>
 
+#include "cli/demo/figures.h"
 #include "cli/experiment/experiments.h"
 #include "cli/experiment/runner.h"
 #include "cli/experiment/summary.h"
-#include "cli/figures.h"
 
 namespace regrasp::cli {
 namespace {

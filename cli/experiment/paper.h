@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/context.h"
+#include "cli/client/context.h"
 #include "cli/experiment/paper_parts.h"
 
 namespace regrasp::cli {

@@ -8,7 +8,7 @@
 
 #include "cli/experiment/paper.h"
 #include "cli/experiment/paper_tables.h"
-#include "cli/print.h"
+#include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {

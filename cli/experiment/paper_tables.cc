@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "cli/errors.h"
+#include "cli/client/errors.h"
 #include "cli/experiment/statistics.h"
-#include "cli/print.h"
+#include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {

@@ -2,7 +2,7 @@
 
 /// Tables of the reproduction report, Markdown, made from the summaries of its parts.
 
-#include "cli/client.h"
+#include "cli/client/client.h"
 
 namespace regrasp::cli {
 

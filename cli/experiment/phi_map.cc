@@ -6,9 +6,9 @@
 #include <deque>
 #include <numbers>
 
-#include "cli/errors.h"
+#include "cli/client/errors.h"
 #include "cli/experiment/start_direction.h"
-#include "cli/print.h"
+#include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <tuple>
 
-#include "cli/errors.h"
-#include "cli/print.h"
+#include "cli/client/errors.h"
+#include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/experiment/setting.h"
-#include "cli/grammar.h"
+#include "cli/grammar/grammar.h"
 
 namespace regrasp::cli {
 

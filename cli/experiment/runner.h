@@ -2,7 +2,7 @@
 
 /// Runs what is left of an experiment: a thread and a daemon for each worker.
 
-#include "cli/context.h"
+#include "cli/client/context.h"
 #include "cli/experiment/store.h"
 
 namespace regrasp::cli {

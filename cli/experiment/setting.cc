@@ -8,8 +8,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "cli/errors.h"
-#include "cli/grammar.h"
+#include "cli/client/errors.h"
+#include "cli/grammar/grammar.h"
 
 namespace regrasp::cli {
 namespace {

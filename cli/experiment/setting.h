@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/client.h"
+#include "cli/client/client.h"
 
 namespace regrasp::cli {
 

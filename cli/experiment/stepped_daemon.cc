@@ -5,8 +5,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "cli/errors.h"
-#include "cli/print.h"
+#include "cli/client/errors.h"
+#include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {

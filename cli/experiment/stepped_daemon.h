@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/client.h"
-#include "cli/private_daemon.h"
+#include "cli/client/client.h"
+#include "cli/client/private_daemon.h"
 
 namespace regrasp::cli {
 

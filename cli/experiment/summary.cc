@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "cli/errors.h"
+#include "cli/client/errors.h"
+#include "cli/client/program.h"
 #include "cli/experiment/statistics.h"
-#include "cli/program.h"
 
 namespace regrasp::cli {
 namespace {

@@ -3,7 +3,7 @@
 /// What an experiment found, made from its rows: the same bytes whatever ran them, in whatever
 /// order.
 
-#include "cli/context.h"
+#include "cli/client/context.h"
 #include "cli/experiment/store.h"
 
 namespace regrasp::cli {

@@ -4,10 +4,10 @@
 #include <numbers>
 #include <optional>
 
-#include "cli/errors.h"
+#include "cli/client/errors.h"
 #include "cli/experiment/gait_events.h"
 #include "cli/experiment/phi_map.h"
-#include "cli/print.h"
+#include "cli/print/print.h"
 #include "core/common/random.h"
 
 namespace regrasp::cli {

@@ -54,7 +54,7 @@ class EveryCommand(DaemonCase):
             words = command["words"]
             if words in ELSEWHERE:
                 continue
-            self.assertTrue(command["examples"], f"cli/examples.cc has no example of '{words}'")
+            self.assertTrue(command["examples"], f"cli/help/examples.cc has no example of '{words}'")
             example = next(e["line"] for e in command["examples"] if not any(e["line"].endswith(endless) for endless in ENDLESS))
             arguments = shlex.split(example.split(" && ")[-1].split(" > ")[0])
             self.assertEqual(arguments[0], "regrasp")

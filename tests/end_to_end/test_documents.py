@@ -157,7 +157,7 @@ class Pages(Case):
     def test_every_command_has_an_example(self):
         with_examples = {words for words, _ in help_examples()}
         for command in json.loads(self.printed(REGRASP, "--json", "help"))["commands"]:
-            self.assertIn(command["words"], with_examples, "cli/examples.cc")
+            self.assertIn(command["words"], with_examples, "cli/help/examples.cc")
 
     def test_links_in_the_readme_lead_somewhere(self):
         for target in re.findall(r"\]\(([^)#]+)\)", (SOURCE / "README.md").read_text()):

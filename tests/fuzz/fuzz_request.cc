@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "core/protocol/methods.h"
-#include "daemon/params.h"
-#include "daemon/rpc.h"
+#include "daemon/requests/params.h"
+#include "daemon/wire/rpc.h"
 
 namespace {
 

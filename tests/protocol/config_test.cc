@@ -1,6 +1,6 @@
 // The configuration file.
 
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 
 #include <gtest/gtest.h>
 

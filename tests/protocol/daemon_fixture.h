@@ -14,10 +14,10 @@
 #include <string>
 #include <thread>
 
-#include "daemon/config.h"
-#include "daemon/connection.h"
+#include "daemon/config/config.h"
 #include "daemon/daemon.h"
-#include "daemon/json.h"
+#include "daemon/server/connection.h"
+#include "daemon/wire/json.h"
 
 namespace regrasp::test {
 

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "daemon/incident.h"
+#include "daemon/output/incident.h"
 #include "tests/unit/snapshots/synthetic_run.h"
 
 namespace regrasp {

@@ -4,11 +4,11 @@
 
 #include <thread>
 
-#include "daemon/history.h"
-#include "daemon/jobs.h"
-#include "daemon/pacing.h"
-#include "daemon/ring.h"
-#include "daemon/wake.h"
+#include "daemon/loop/pacing.h"
+#include "daemon/loop/ring.h"
+#include "daemon/output/history.h"
+#include "daemon/requests/jobs.h"
+#include "daemon/server/wake.h"
 
 namespace regrasp {
 namespace {

@@ -1,6 +1,6 @@
 // Lines in, requests out, without a daemon.
 
-#include "daemon/rpc.h"
+#include "daemon/wire/rpc.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The socket in the file system (rule 10).
 
-#include "daemon/socket.h"
+#include "daemon/server/socket.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

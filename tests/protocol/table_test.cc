@@ -13,8 +13,8 @@
 #include "core/protocol/socket_path.h"
 #include "core/sensing/noise.h"
 #include "core/session/command.h"
-#include "daemon/protocol_page.h"
-#include "daemon/service.h"
+#include "daemon/pages/protocol_page.h"
+#include "daemon/requests/service.h"
 
 namespace regrasp {
 namespace {

@@ -1,8 +1,7 @@
-#include "cli/shell_words.h"
-
 #include <gtest/gtest.h>
 
-#include "cli/errors.h"
+#include "cli/client/errors.h"
+#include "cli/shell/words.h"
 
 namespace regrasp::cli {
 namespace {

@@ -1,6 +1,6 @@
 // Pictures as text: each encoding is read back by an independent reader.
 
-#include "cli/terminal_image.h"
+#include "cli/print/terminal_image.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <map>
 
-#include "cli/errors.h"
+#include "cli/client/errors.h"
 
 namespace regrasp::cli {
 namespace {

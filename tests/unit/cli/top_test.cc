@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "cli/braille.h"
-#include "cli/top_keys.h"
-#include "cli/top_layout.h"
+#include "cli/print/braille.h"
+#include "cli/top/keys.h"
+#include "cli/top/layout.h"
 #include "core/protocol/methods.h"
 
 namespace regrasp::cli {

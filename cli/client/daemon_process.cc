@@ -1,0 +1,159 @@
+#include "cli/client/daemon_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/client/client.h"
+#include "cli/client/errors.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool Executable(const fs::path& path) {
+  return ::access(path.c_str(), X_OK) == 0 && fs::is_regular_file(path);
+}
+
+/// The last lines of a file, at most `count`.
+std::string Tail(const std::string& path, std::size_t count) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  std::string text;
+  for (std::size_t i = lines.size() > count ? lines.size() - count : 0; i < lines.size(); ++i) {
+    text += (text.empty() ? "" : " | ") + lines[i];
+  }
+  return text;
+}
+
+/// The child's side: own session, output to the log, then the daemon. Never returns. Only
+/// async-signal-safe calls: the program may have threads.
+[[noreturn]] void Become(char* const* argv, int log_fd) {
+  ::setsid();
+  const int null_fd = ::open("/dev/null", O_RDONLY);
+  ::dup2(null_fd, STDIN_FILENO);
+  ::dup2(log_fd, STDOUT_FILENO);
+  ::dup2(log_fd, STDERR_FILENO);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::signal(SIGINT, SIG_DFL);
+  ::signal(SIGTERM, SIG_DFL);
+  ::execv(argv[0], argv);
+  ::_exit(127);
+}
+
+}  // namespace
+
+std::string FindDaemon() {
+  std::error_code ignored;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path() / "regraspd";
+  if (Executable(beside)) return beside;
+  const char* path = std::getenv("PATH");
+  const std::string places = path != nullptr ? path : "";
+  for (std::size_t begin = 0; begin <= places.size();) {
+    const auto end = std::min(places.find(':', begin), places.size());
+    const fs::path candidate = fs::path(places.substr(begin, end - begin)) / "regraspd";
+    if (Executable(candidate)) return fs::absolute(candidate);
+    begin = end + 1;
+  }
+  throw CliError(kNotFound, fmt::format("no regraspd: neither {} nor in $PATH", beside.string()),
+                 "regrasp doctor");
+}
+
+StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
+                          double timeout_s) {
+  const std::string daemon = FindDaemon();
+  const fs::path directory = fs::absolute(socket).parent_path();
+  std::error_code error;
+  if (!fs::exists(directory)) {
+    fs::create_directories(directory.parent_path(), error);
+    if (::mkdir(directory.c_str(), 0700) != 0 && errno != EEXIST) {
+      throw CliError(errno == EACCES ? kPermission : kIo,
+                     fmt::format("cannot make {}: {}", directory.string(), std::strerror(errno)),
+                     "regrasp -s PATH up");
+    }
+  }
+  StartedDaemon started{0, socket, fs::path(socket).replace_extension(".log")};
+  const int log_fd =
+      ::open(started.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (log_fd < 0) {
+    throw CliError(errno == EACCES ? kPermission : kIo,
+                   fmt::format("cannot write the log {}: {}", started.log, std::strerror(errno)),
+                   "regrasp -s PATH up");
+  }
+  std::vector<std::string> words = {daemon, "--socket", socket};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (auto& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  started.pid = ::fork();
+  if (started.pid == 0) Become(argv.data(), log_fd);
+  ::close(log_fd);
+  if (started.pid < 0)
+    throw CliError(kIo, fmt::format("cannot start {}: {}", daemon, std::strerror(errno)));
+
+  const auto deadline = Deadline(timeout_s);
+  try {
+    while (!Listening(socket)) {
+      int status = 0;
+      if (::waitpid(started.pid, &status, WNOHANG) == started.pid) {
+        const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+        const std::string last = Tail(started.log, 3);
+        const auto exit_code = code == 2 || code == 5 || code == 6 || code == 74 || code == 77
+                                   ? static_cast<ExitCode>(code)
+                                   : kFailed;
+        throw CliError(exit_code,
+                       last.empty() ? fmt::format("regraspd ended at once ({} {})",
+                                                  WIFSIGNALED(status) ? "signal" : "exit code",
+                                                  WIFSIGNALED(status) ? WTERMSIG(status) : code)
+                                    : last,
+                       "regraspd --help, or cat " + started.log);
+      }
+      if (Clock::now() > deadline) {
+        throw CliError(kTimeout, fmt::format("regraspd is not ready after {:g} s", timeout_s),
+                       "cat " + started.log);
+      }
+      WaitFor(-1, 0, Deadline(0.01));
+    }
+  } catch (const CliError& failure) {
+    if (failure.code == kTimeout || failure.code == kInterrupted) ::kill(started.pid, SIGTERM);
+    throw;
+  }
+  return started;
+}
+
+bool StopDaemon(const std::string& socket, double timeout_s) {
+  Client client(socket, timeout_s);
+  const auto deadline = Deadline(timeout_s);
+  const Json answer = client.Call("shutdown", Json::object());
+  // The daemon is gone when its end of this connection closes and nobody listens any more.
+  try {
+    while (client.NextEvent(std::chrono::duration<double>(deadline - Clock::now()).count())) {
+    }
+  } catch (const CliError& error) {
+    if (error.code != kNoDaemon) throw;
+  }
+  if (answer.value("activated", false)) return true;  // looking would start it again
+  while (fs::exists(socket) && Listening(socket)) {
+    if (Clock::now() > deadline) {
+      throw CliError(kTimeout, fmt::format("{} is still there after {:g} s", socket, timeout_s),
+                     "regrasp status");
+    }
+    WaitFor(-1, 0, Deadline(0.01));
+  }
+  return false;
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,32 @@
+#include "cli/client/errors.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace regrasp::cli {
+
+std::string JsonQuote(const std::string& text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+void PrintError(const CliError& error, bool json, bool color) {
+  std::string text;
+  if (json) {
+    text =
+        fmt::format(R"({{"error":{{"exit_code":{},"message":{},"hint":{}}}}})",
+                    static_cast<int>(error.code), JsonQuote(error.what()), JsonQuote(error.hint));
+    if (error.rpc_code != 0) {
+      text.insert(text.size() - 2, fmt::format(R"(,"code":{})", error.rpc_code));
+    }
+    text += '\n';
+  } else {
+    text = fmt::format("{}regrasp:{} {}\n", color ? "\x1b[31m" : "", color ? "\x1b[0m" : "",
+                       error.what());
+    if (!error.hint.empty()) text += fmt::format("  try: {}\n", error.hint);
+  }
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,36 @@
+#include "cli/client/private_daemon.h"
+
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <csignal>
+
+#include "cli/client/errors.h"
+
+namespace regrasp::cli {
+
+PrivateDaemon::PrivateDaemon(const std::vector<std::string>& arguments) {
+  char name[] = "/tmp/regrasp-private-XXXXXX";
+  if (::mkdtemp(name) == nullptr) throw CliError(kIo, "cannot make a directory in /tmp", "df /tmp");
+  directory_ = name;
+  try {
+    started_ = StartDaemon(directory_ / "regrasp.sock", arguments, 60);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove_all(directory_, ignored);
+    throw;
+  }
+}
+
+PrivateDaemon::~PrivateDaemon() {
+  try {
+    StopDaemon(started_.socket, 5);
+  } catch (...) {
+    ::kill(started_.pid, SIGKILL);  // it has nothing to lose
+  }
+  ::waitpid(started_.pid, nullptr, 0);
+  std::error_code ignored;
+  std::filesystem::remove_all(directory_, ignored);
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/client/daemon_process.h"
+
+namespace regrasp::cli {
+
+/// A daemon of this program's own, its socket in a directory of its own under /tmp; stopped, and
+/// the directory removed, when it goes out of scope, however that happens.
+class PrivateDaemon {
+ public:
+  /// Starts `regraspd --socket … arguments…`. Throws CliError as StartDaemon() does.
+  explicit PrivateDaemon(const std::vector<std::string>& arguments);
+  ~PrivateDaemon();
+  PrivateDaemon(const PrivateDaemon&) = delete;
+  PrivateDaemon& operator=(const PrivateDaemon&) = delete;
+
+  const std::string& socket() const { return started_.socket; }
+
+ private:
+  std::filesystem::path directory_;
+  StartedDaemon started_;
+};
+
+}  // namespace regrasp::cli

@@ -1,0 +1,210 @@
+// Control: what changes the run.
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "cli/client/context.h"
+#include "cli/commands/jobs.h"
+
+namespace regrasp::cli {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr const char* kGroup = "Control";
+
+ExitCode Rotate(Context& context, const Invocation& invocation) {
+  const Json& p = invocation.params;
+  const auto given = p.contains("angle_rad") + p.contains("turns") + p.contains("continuous");
+  if (given != 1) {
+    throw CliError(
+        kUsage, fmt::format("rotate takes one of --angle, --turns and --continuous, not {}", given),
+        "regrasp rotate --angle 90 --wait");
+  }
+  if (p.contains("continuous") && invocation.Has("wait")) {
+    throw CliError(kUsage, "rotate --continuous never ends by itself: --wait makes no sense",
+                   "regrasp rotate --continuous, then regrasp stop");
+  }
+  return StartJob(context, invocation);
+}
+
+ExitCode Move(Context& context, const Invocation& invocation) {
+  if (invocation.params.empty()) {
+    throw CliError(kUsage, "move takes --by (mm), --turn (degrees) or both, not none",
+                   "regrasp move --by 0,0,5 --wait");
+  }
+  return StartJob(context, invocation);
+}
+
+ExitCode Stop(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  context.Print(answer, [&] {
+    const Json& job = At(answer, "job");
+    context.out().Line(job.is_null()
+                           ? "nothing to stop"
+                           : fmt::format("job {} stopped; the hand keeps holding", Plain(job)));
+  });
+  return kOk;
+}
+
+ExitCode PauseOrResume(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  context.Print(answer, [&] {
+    context.out().Line(fmt::format("{} at tick {}",
+                                   At(answer, "paused") == true ? "paused" : "running",
+                                   Plain(At(answer, "tick"))));
+  });
+  return kOk;
+}
+
+ExitCode Reset(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  context.Print(answer, [&] {
+    context.out().Line(fmt::format("new run: object {}, seed {}", Plain(At(answer, "object")),
+                                   Plain(At(answer, "seed"))));
+  });
+  return kOk;
+}
+
+void PrintNoise(Output& out, const Json& noise) {
+  const auto line = [&](const char* what, const char* key, int digits, double scale,
+                        const char* unit) {
+    out.Line(fmt::format("  {:<18}{:>8} {}", what, Fixed(At(noise, key), digits, scale), unit));
+  };
+  out.Line(fmt::format("noise preset {}", out.Paint(Plain(At(noise, "preset")), Style::kBold)));
+  line("contact position", "position_m", 2, 1e3, "mm");
+  line("contact normal", "normal_rad", 2, kDegrees, "deg");
+  line("normal force", "force_n", 3, 1, "N");
+  line("joint angle", "joint_rad", 2, kDegrees, "deg");
+  line("object position", "object_position_m", 2, 1e3, "mm");
+  line("object orientation", "object_rotation_rad", 2, kDegrees, "deg");
+}
+
+ExitCode SendNoise(Context& context, const char* method, const Json& params) {
+  const Json answer = context.client().Call(method, params);
+  context.Print(answer, [&] { PrintNoise(context.out(), answer); });
+  return kOk;
+}
+
+ExitCode NoiseShow(Context& context, const Invocation&) {
+  return SendNoise(context, "noise.get", Json::object());
+}
+ExitCode NoisePreset(Context& context, const Invocation& invocation) {
+  return SendNoise(context, "noise.set", invocation.params);
+}
+ExitCode NoiseOff(Context& context, const Invocation&) {
+  return SendNoise(context, "noise.set", {{"preset", "off"}});
+}
+
+ExitCode NoiseSet(Context& context, const Invocation& invocation) {
+  Json params = invocation.params;
+  if (invocation.Has("pose")) {
+    const auto pose = ParseNumbers(invocation.Text("pose"), 2, "--pose");
+    params["object_position_m"] = pose[0] * 1e-3;
+    params["object_rotation_rad"] = pose[1] / kDegrees;
+  }
+  if (params.empty())
+    throw CliError(kUsage, "noise set: no level given",
+                   "regrasp noise set --position 1 --normal 2");
+  return SendNoise(context, "noise.set", params);
+}
+
+ExitCode Push(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  context.Print(answer, [&] {
+    context.out().Line(fmt::format("pushing with {} N for {} s", Vector(At(answer, "force_n"), 2),
+                                   Plain(At(answer, "duration_s"))));
+  });
+  return kOk;
+}
+
+std::string Range(const Json& p) {
+  return fmt::format("{} … {}", Plain(At(p, "min")), Plain(At(p, "max")));
+}
+
+void PrintParameter(Output& out, const Json& p) {
+  const std::string unit = Plain(At(p, "unit"));
+  out.Line(fmt::format("{} = {}{}{}", out.Paint(Plain(At(p, "name")), Style::kBold),
+                       Plain(At(p, "value")), unit.empty() ? "" : " ", unit));
+  out.Line(fmt::format("  range   {}", Range(p)));
+  out.Line(fmt::format("  meaning {}", Plain(At(p, "description"))));
+  out.Line(fmt::format("  source  {}", Plain(At(p, "source"))));
+}
+
+ExitCode ParamList(Context& context, const Invocation&) {
+  const Json answer = context.client().Call("param.get", Json::object());
+  const Json& parameters = At(answer, "parameters");
+  context.PrintRows(answer, {parameters.begin(), parameters.end()}, [&] {
+    const bool verbose = context.options().verbose;
+    std::vector<std::string> titles = {"NAME", ">VALUE", "UNIT", "RANGE"};
+    if (verbose) titles.insert(titles.end(), {"MEANING", "SOURCE"});
+    Table table(titles);
+    for (const auto& p : parameters) {
+      table.Row({Plain(At(p, "name")), Plain(At(p, "value")), Plain(At(p, "unit")), Range(p),
+                 Plain(At(p, "description")), Plain(At(p, "source"))});
+    }
+    context.out().Add(table.Text(context.out()));
+  });
+  return kOk;
+}
+
+ExitCode ParamGetOrSet(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  context.Print(answer, [&] { PrintParameter(context.out(), answer); });
+  return kOk;
+}
+
+}  // namespace
+
+std::vector<CommandSpec> ControlCommands() {
+  CommandSpec preset = MethodCommand("noise.set", kGroup, NoisePreset,
+                                     {.positional = {"preset"},
+                                      .hidden = {"position_m", "normal_rad", "force_n", "joint_rad",
+                                                 "object_position_m", "object_rotation_rad"}});
+  preset.words = "noise preset";
+  preset.sentence = "set all noise levels to a preset";
+  preset.args.front().required = true;
+  CommandSpec noise_off{"noise off", kGroup, "switch all noise off", nullptr, {}, NoiseOff};
+  CommandSpec param_get =
+      MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
+  param_get.args.front().required = true;
+  param_get.sentence = "value, unit, range and source of a parameter";
+  CommandSpec move = MethodCommand("move", kGroup, Move);
+  move.args[0].flags = "--by";
+  move.args[0].help = "shift of the object's centre along the axes of W, in mm, at most 50 long";
+  move.args[1].flags = "--turn";
+  move.args[1].help = "turn, a rotation vector in W, in degrees, at most 180 long";
+  return {
+      MethodCommand("grasp", kGroup, StartJob),
+      MethodCommand("release", kGroup, StartJob),
+      MethodCommand("rotate", kGroup, Rotate),
+      move,
+      MethodCommand("explore", kGroup, StartJob, {.positional = {"finger"}}),
+      MethodCommand("stop", kGroup, Stop),
+      MethodCommand("pause", kGroup, PauseOrResume),
+      MethodCommand("resume", kGroup, PauseOrResume),
+      MethodCommand("step", kGroup, StartJob, {.positional = {"ticks"}}),
+      MethodCommand("reset", kGroup, Reset),
+      MethodCommand("noise.get", kGroup, NoiseShow),
+      MethodCommand("noise.set", kGroup, NoiseSet,
+                    {.hidden = {"preset", "object_position_m", "object_rotation_rad"},
+                     .extra = {{.key = "pose",
+                                .flags = "--pose",
+                                .metavar = "MM,DEG",
+                                .help = "object position and orientation, per axis",
+                                .default_text = "unchanged"}}}),
+      preset,
+      noise_off,
+      MethodCommand("push", kGroup, Push),
+      CommandSpec{"param list",
+                  kGroup,
+                  "every parameter; with -v its meaning and source",
+                  nullptr,
+                  {},
+                  ParamList},
+      param_get,
+      MethodCommand("param.set", kGroup, ParamGetOrSet, {.positional = {"name", "value"}}),
+  };
+}
+
+}  // namespace regrasp::cli

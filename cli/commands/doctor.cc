@@ -1,0 +1,207 @@
+#include "cli/commands/doctor.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "cli/client/daemon_process.h"
+#include "cli/client/private_daemon.h"
+#include "cli/client/program.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Check {
+  std::string name, finding, next;
+  bool good = true;
+};
+
+std::string FirstLine(const Finished& finished) {
+  const std::string& text = finished.code == 0 ? finished.out : finished.err;
+  std::string line = text.substr(0, text.find('\n'));
+  if (line.starts_with("regraspd: ")) line.erase(0, 10);
+  return line;
+}
+
+/// Running it also finds every shared library it needs.
+Check CheckProgram(const std::string& daemon) {
+  const Finished finished = RunProgram({daemon, "--version"});
+  if (finished.code == 0) return {"program", FirstLine(finished) + ", " + daemon, ""};
+  return {"program", FirstLine(finished), "./check installs the packages it needs (packages.txt)",
+          false};
+}
+
+/// The programs that replay, film and draw. Without arguments each says how it is used.
+Check CheckHelpers() {
+  std::string found;
+  for (const char* name : {"regrasp-run", "regrasp-plot-experiment"}) {
+    try {
+      const std::string path = FindHelper(name);
+      const Finished finished = RunProgram({path});
+      if (finished.code != static_cast<int>(kUsage))
+        return {"helpers", FirstLine(finished),
+                "./check installs the packages it needs (packages.txt)", false};
+    } catch (const CliError& error) {
+      if (error.code == kInterrupted) throw;
+      return {"helpers", error.what(), "build everything, or install the package", false};
+    }
+    found += (found.empty() ? "" : ", ") + std::string(name);
+  }
+  return {"helpers", found, ""};
+}
+
+Check CheckFont() {
+  for (const char* place : {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu"})
+    if (fs::exists(fs::path(place) / "DejaVuSans.ttf")) return {"font", place, ""};
+  return {"font", "DejaVu Sans is missing: no pictures", "apt install fonts-dejavu-core", false};
+}
+
+/// Reads the configuration, loads the models it names and builds the session.
+Check CheckConfiguration(const std::string& daemon) {
+  const Finished finished = RunProgram({daemon, "--check-config"});
+  if (finished.code == 0) return {"models", "hand, object and configuration load", ""};
+  const bool model = finished.code == static_cast<int>(kNotFound);
+  return {"models", FirstLine(finished),
+          model ? "regrasp up --models-dir DIR" : "regrasp config check", false};
+}
+
+Check CheckOutput(const std::string& daemon) {
+  const Json config = Json::parse(RunProgram({daemon, "--print-config"}).out, nullptr, false);
+  std::string directory;
+  if (config.is_object())
+    for (const auto& key : config["keys"])
+      if (key["name"] == "output_dir") directory = Plain(key["value"]);
+  if (directory.empty()) return {"output", "the usual place", ""};
+  fs::path place = directory;
+  std::error_code ignored;
+  while (!fs::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
+  if (::access(place.c_str(), W_OK | X_OK) == 0) return {"output", directory, ""};
+  return {"output", "cannot write to " + place.string(), "regrasp up --output-dir DIR", false};
+}
+
+Check CheckSocket(const std::string& flag) {
+  const SocketPath socket = ConnectPath(flag);
+  const std::string text = fmt::format("{} (from {})", socket.path, socket.source);
+  const std::string cause = DistrustedDirectory(socket.path);
+  if (!cause.empty()) return {"socket", text + ": " + cause, "choose another with -s", false};
+  return {"socket", text, ""};
+}
+
+Check CheckDaemon(Context& context) {
+  try {
+    const Json status = context.client().Call("status", Json::object());
+    const std::string version = Plain(At(status, "version"));
+    if (version != REGRASP_VERSION)
+      return {"daemon", fmt::format("version {}, this is {}", version, REGRASP_VERSION),
+              "regrasp down, then regrasp up", false};
+    return {"daemon", fmt::format("answers, state {}", Plain(At(status, "state"))), ""};
+  } catch (const CliError& error) {
+    // Not running is a state, not a fault.
+    return {"daemon", error.what(), error.hint, error.code == kNoDaemon};
+  }
+}
+
+/// A private daemon grasps and holds for two simulated seconds, twice: the object must stay, and
+/// the bits must be the same.
+class SelfTest {
+ public:
+  explicit SelfTest(const std::string& socket) : client_(socket, 30) {}
+
+  Check Run() {
+    const std::string first = HoldTwoSeconds();
+    if (!cause_.empty()) return {"physics", cause_, "regrasp up, then regrasp events", false};
+    client_.Call("reset", {{"seed", 1}});
+    if (HoldTwoSeconds() != first)
+      return {"physics", "the same seed gave other bits: this machine computes unreliably",
+              "memtest86+", false};
+    return {
+        "physics",
+        fmt::format("held for 2 s, {:.3f} mm off its place, the same bits twice", moved_m_ * 1e3),
+        ""};
+  }
+
+ private:
+  static constexpr int kTicksToHold = 4000, kTicksHeld = 2000;
+  static constexpr double kMostMoved = 1e-3;  // [m]: what the project promises for a hold
+
+  void Step(int ticks) {
+    const Json job = client_.Call("step", {{"ticks", ticks}});
+    client_.Call("job.wait", {{"id", job["job"]}}, 60);
+  }
+  Json Position() { return client_.Call("truth", Json::object())["object"]["p_WO_m"]; }
+
+  /// Returns the hash of the state at the end; `cause_` says what went wrong.
+  std::string HoldTwoSeconds() {
+    client_.Call("grasp", Json::object());
+    Step(kTicksToHold);
+    const Json before = Position();
+    Step(kTicksHeld);
+    const Json after = Position(), status = client_.Call("status", Json::object());
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double d = after[i].get<double>() - before[i].get<double>();
+      square += d * d;
+    }
+    moved_m_ = std::sqrt(square);
+    if (status["state"] != "holding")
+      cause_ = "the hand did not hold the object: state " + Plain(status["state"]);
+    else if (moved_m_ > kMostMoved)
+      cause_ = fmt::format("the object moved by {:.2f} mm in 2 s", moved_m_ * 1e3);
+    return Plain(status["state_hash"]);
+  }
+
+  Client client_;
+  std::string cause_;
+  double moved_m_ = 0;
+};
+
+Check CheckPhysics() {
+  try {
+    const PrivateDaemon daemon({"--paused", "--speed", "max", "--seed", "1", "--noise", "paper",
+                                "--hand", "shadow", "--config", "/dev/null"});
+    return SelfTest(daemon.socket()).Run();
+  } catch (const CliError& error) {
+    return {"physics", error.what(), error.hint, false};
+  }
+}
+
+}  // namespace
+
+ExitCode Doctor(Context& context, const Invocation&) {
+  const Interruptible interruptible;
+  std::vector<Check> checks;
+  try {
+    const std::string daemon = FindDaemon();
+    checks = {CheckProgram(daemon),       CheckHelpers(),      CheckFont(),
+              CheckConfiguration(daemon), CheckOutput(daemon), CheckPhysics()};
+  } catch (const CliError& error) {
+    checks = {{"program", error.what(), "build it, or install the package", false}};
+  }
+  checks.push_back(CheckSocket(context.options().socket));
+  checks.push_back(CheckDaemon(context));
+  Json answer = {{"ok", true}, {"checks", Json::array()}};
+  for (const auto& check : checks) {
+    answer["checks"].push_back({{"name", check.name},
+                                {"ok", check.good},
+                                {"finding", check.finding},
+                                {"next", check.next}});
+    if (!check.good) answer["ok"] = false;
+  }
+  context.Print(answer, [&] {
+    Output& out = context.out();
+    for (const auto& check : checks) {
+      out.Line(
+          fmt::format("{} {:<9}{}",
+                      check.good ? out.Paint("ok  ", Style::kGood) : out.Paint("FAIL", Style::kBad),
+                      check.name, check.finding));
+      if (!check.next.empty()) out.Line("              try: " + check.next);
+    }
+  });
+  return answer["ok"] == true ? kOk : kFailed;
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,58 @@
+#include "cli/commands/execute.h"
+
+#include <unistd.h>
+
+#include "cli/client/context.h"
+
+namespace regrasp::cli {
+namespace {
+
+/// The daemon's refusals are for any client: where its hint is no command, it belongs to the cause,
+/// and the next command is found here.
+CliError ForPeople(const CliError& error, const std::string& words) {
+  if (error.rpc_code == 0 || error.hint.starts_with("regrasp")) return error;
+  const std::string next = words.starts_with("job ")     ? "regrasp job list"
+                           : words.starts_with("param ") ? "regrasp param list"
+                                                         : "regrasp help " + words;
+  const std::string cause = error.what();
+  return {error.code, error.hint.empty() ? cause : cause + "; " + error.hint, next, error.rpc_code};
+}
+
+}  // namespace
+
+ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& defaults,
+                 const std::string& where) {
+  GlobalOptions options = defaults;
+  std::vector<const char*> argv = {"regrasp"};
+  for (const auto& word : words) argv.push_back(word.c_str());
+  const int argc = static_cast<int>(argv.size());
+  const auto fail = [&](const CliError& error) {
+    const CliError placed(error.code, where + error.what(), error.hint, error.rpc_code);
+    PrintError(placed, defaults.json || WantsJson(argc, argv.data()),
+               WantsColor(options.color, STDERR_FILENO));
+    return error.code;
+  };
+  try {
+    const Invocation invocation = Parse(argc, argv.data(), &options);
+    Context context(options);
+    ExitCode code = kOk;
+    try {
+      code = invocation.command->run(context, invocation);
+    } catch (CliError& error) {
+      context.out().Flush();  // what was answered before the failure
+      if (error.code == kUsage && error.hint.empty()) {
+        error.hint = "regrasp help " + invocation.command->words;
+      }
+      throw ForPeople(error, invocation.command->words);
+    }
+    context.out().Flush();
+    return code;
+  } catch (const CliError& error) {
+    return fail(error);
+  } catch (const std::exception& error) {
+    return fail(
+        CliError(kProtocol, std::string("unexpected answer: ") + error.what(), "regrasp doctor"));
+  }
+}
+
+}  // namespace regrasp::cli

@@ -1,0 +1,200 @@
+// Experiments: many trials with other seeds, on private daemons, and what they say together.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "cli/client/context.h"
+#include "cli/experiment/experiments.h"
+#include "cli/experiment/paper.h"
+#include "cli/experiment/summary.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGroup = "Results";
+constexpr double kMostSeeds = 1e6;
+
+void Print(Context& context, const Json& summary, const fs::path& directory) {
+  Json answer = summary;
+  answer["output_dir"] = fs::absolute(directory).string();
+  std::vector<Json> rows(summary.at("groups").begin(), summary.at("groups").end());
+  context.PrintRows(answer, rows, [&] {
+    Output& out = context.out();
+    out.Add(SummaryTable(out, summary));
+    out.Line();
+    out.Line("trials   " + (directory / "trials.csv").string());
+    out.Line("summary  " + (directory / "summary.json").string());
+    out.Line("picture  " + (directory / "summary.png").string());
+  });
+}
+
+ExitCode Experiment(Context& context, const Invocation& invocation) {
+  const Interruptible interruptible;
+  const std::string name = invocation.command->words.substr(std::string("experiment ").size());
+  Plan plan = PlanFromArguments(name, invocation);
+  CompletePlan(&plan);
+  const fs::path directory = invocation.Text("output");
+  Print(context, RunExperiment(context, plan, Workers(invocation), directory), directory);
+  return kOk;
+}
+
+ExitCode Merge(Context& context, const Invocation& invocation) {
+  std::vector<fs::path> parts;
+  std::istringstream words(invocation.Text("dir"));
+  for (std::string word; std::getline(words, word);) parts.emplace_back(word);
+  const fs::path directory = invocation.Text("output");
+  Plan whole = ReadPlan(parts.front());
+  Trials trials;
+  for (const auto& part : parts) {
+    const Plan plan = ReadPlan(part);
+    if (const auto difference = Difference(whole, plan); !difference.empty())
+      throw CliError(kRefused,
+                     fmt::format("{} holds another experiment than {}: {}", part.string(),
+                                 parts.front().string(), difference),
+                     "regrasp help experiment merge");
+    for (const auto& [unit, result] : ReadTrials(part)) {
+      const auto [place, fresh] = trials.emplace(unit, result);
+      if (!fresh && !(place->second == result))
+        throw CliError(
+            kRefused,
+            fmt::format("{} has another result for trial {} than the others", part.string(), unit),
+            "delete one of the two directories and run it again");
+    }
+  }
+  whole.shard = whole.shards = 1;
+  if (trials.size() < whole.num_units())
+    throw CliError(kRefused,
+                   fmt::format("{} of {} trials are missing", whole.num_units() - trials.size(),
+                               whole.num_units()),
+                   "give the directory of every shard, each run to its end");
+  Store store(directory, whole);
+  for (const auto& [unit, result] : trials)
+    if (!store.trials().contains(unit)) store.Add(unit, result);
+  Print(context, WriteResults(whole, store.trials(), directory), directory);
+  return kOk;
+}
+
+Arg Text(const char* key, const char* flags, const char* metavar, const char* help,
+         const char* default_text = "") {
+  return {
+      .key = key, .flags = flags, .metavar = metavar, .help = help, .default_text = default_text};
+}
+
+Arg Number(const char* key, const char* flags, ArgKind kind, const char* metavar, const char* help,
+           double min, double max, const char* default_text) {
+  return {.key = key,
+          .flags = flags,
+          .metavar = metavar,
+          .kind = kind,
+          .help = help,
+          .min = min,
+          .max = max,
+          .default_text = default_text};
+}
+
+Arg OutputDirectory() {
+  Arg arg =
+      Text("output", "-o,--output", "DIR", "where results go; unfinished ones go on from there");
+  arg.required = true;
+  return arg;
+}
+
+std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* noise) {
+  Arg set =
+      Text("set", "--set", "NAME=VALUE", "a parameter of the daemon, as in param set; repeatable");
+  set.repeated = true;
+  Arg cases = Text("case", "--case", "'NAME: KEY=VALUE ...'",
+                   "settings to compare: object, tilt, push, parameters; repeatable");
+  cases.repeated = true;
+  for (const Arg& arg :
+       {Text("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
+        Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,
+               kMaxSafeInteger - kMostSeeds, "1"),
+        Number("seeds", "-n,--seeds", ArgKind::kInteger, "N", "seeds, one after the other", 1,
+               kMostSeeds, seeds),
+        Text("object", "--object", "NAME|FILE", "the object", "the scenario's"),
+        Number("tilt", "--tilt", ArgKind::kNumber, "DEG",
+               "tilt of the hand: 0 palm up, 90 fingers down", -180, 180, "the scenario's"),
+        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases,
+        Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        Number("workers", "--workers", ArgKind::kInteger, "N",
+               "daemons at work; the results do not depend on it", 1, 256, "one per core"),
+        Text("shard", "--shard", "i/N", "only every N-th trial, from the i-th; join with merge"),
+        OutputDirectory()})
+    args.push_back(arg);
+  return args;
+}
+
+std::vector<Arg> ExplorationArgs(const char* estimators) {
+  Arg criterion = Text("criterion", "--criterion", "NAME", "what is maximised", "manipulability");
+  const auto& values = FindParam(*FindMethod("explore"), "criterion")->values;
+  criterion.values.assign(values.begin(), values.end());
+  return {Text("finger", "--finger", "NAMES", "fingers, separated by commas, or all", "all"),
+          criterion,
+          Text("estimator", "--estimator", "NAMES", "least_squares, secant, or both with a comma",
+               estimators),
+          Number("rays", "--rays", ArgKind::kInteger, "N",
+                 "rays of the noise-free map that success is judged by; 0: none", 0, 360, "12")};
+}
+
+}  // namespace
+
+std::vector<CommandSpec> ExperimentCommands() {
+  Arg directories = Text("dir", "", "DIR...", "directories of the shards");
+  directories.required = directories.repeated = true;
+  Arg only_paper = Text("only-paper", "--only-paper", "",
+                        "leave out what goes beyond the paper, and the ablations");
+  only_paper.kind = ArgKind::kFlag;
+  return {
+      {"experiment exploration", kGroup,
+       "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
+       With(ExplorationArgs("least_squares"), "50", "paper"), Experiment},
+      {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
+       With({Text("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
+                  "0,0,-1"),
+             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
+             Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns", -360000,
+                    360000, "not used"),
+             Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
+                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
+             Number("push", "--push", ArgKind::kNumber, "N",
+                    "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
+            "10", "paper"),
+       Experiment},
+      {"experiment noise-sweep", kGroup,
+       "explorations at every noise preset, the estimators side by side", nullptr,
+       With(ExplorationArgs("both"), "20", "off,fine,paper,coarse,taxel"), Experiment},
+      {"experiment paper",
+       kGroup,
+       "everything the paper shows, measured again: figures, trials and a page",
+       nullptr,
+       {Number("seed", "--seed", ArgKind::kInteger, "N", "first seed", 0,
+               kMaxSafeInteger - kMostSeeds, "20000"),
+        Number("seeds", "-n,--seeds", ArgKind::kInteger, "N",
+               "seeds of the explorations; all other parts take a fifth of them", 1, kMostSeeds,
+               "50"),
+        Number("repeats", "--repeats", ArgKind::kInteger, "N",
+               "explorations of the ring finger with other start gradients", 0, 1000,
+               "50, as in the paper"),
+        Number("turns", "--turns", ArgKind::kNumber, "N", "of each rotation", 0.01, 1000, "1"),
+        Text("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
+        Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360, "8"),
+        only_paper, Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        Number("workers", "--workers", ArgKind::kInteger, "N", "daemons at work", 1, 256,
+               "one per core"),
+        OutputDirectory()},
+       Paper},
+      {"experiment merge",
+       kGroup,
+       "join the shards of an experiment",
+       nullptr,
+       {directories, OutputDirectory()},
+       Merge},
+  };
+}
+
+}  // namespace regrasp::cli

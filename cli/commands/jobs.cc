@@ -1,0 +1,203 @@
+#include "cli/commands/jobs.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <numbers>
+
+#include "cli/help/wrap.h"
+
+namespace regrasp::cli {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// One line on stderr that is rewritten; nothing when stderr is no terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool on) : on_(on) {}
+  ~ProgressLine() { Show(""); }
+  bool on() const { return on_; }
+  void Show(const std::string& text) {
+    if (on_) std::fputs(("\r\x1b[K" + text).c_str(), stderr);
+  }
+
+ private:
+  bool on_;
+};
+
+std::string JobTitle(const Json& record) {
+  std::string title = Plain(At(record, "method"));
+  if (At(record, "finger").is_string()) title += " " + Plain(At(record, "finger"));
+  return title;
+}
+
+std::string ProgressText(Context& context, const Json& record) {
+  Output& out = context.out();
+  const double progress = record.value("progress", 0.0);
+  std::string text =
+      fmt::format("{}  {} {:3.0f} %", JobTitle(record), out.Bar(progress, 30), 100 * progress);
+  if (record.value("method", "") == "rotate" && At(record, "angle_rad").is_number()) {
+    text += fmt::format("  {}{}", Fixed(At(record, "angle_rad"), 1, kDegrees), out.Degree());
+  }
+  if (record.value("method", "") == "explore") {
+    const Json quality = context.client().Call("quality", Json::object());
+    const Json& finger = At(At(quality, "fingers"), Plain(At(record, "finger")).c_str());
+    text += fmt::format("  {} {}", out.Phi(), Fixed(At(finger, "manipulability"), 3));
+  }
+  return text;
+}
+
+std::string Change(const Output& out, const Json& from, const Json& to) {
+  if (!from.is_number() || !to.is_number()) return "-";
+  const double a = from, b = to;
+  std::string text = fmt::format("{:.4f} to {:.4f}", a, b);
+  if (a > 0)
+    text += "  " + out.Paint(fmt::format("{:+.1f} %", 100 * (b - a) / a),
+                             b > a ? Style::kGood : Style::kWarn);
+  return text;
+}
+
+void PrintExplore(Output& out, const Json& r) {
+  out.Line(fmt::format("  criterion  {}", Plain(At(r, "criterion"))));
+  out.Line(fmt::format("  {}   {}", out.Phi() == "phi" ? "phi     " : "φ       ",
+                       Change(out, At(r, "phi_initial"), At(r, "phi_final"))));
+  out.Line(fmt::format("  noise-free {}",
+                       Change(out, At(r, "phi_true_initial"), At(r, "phi_true_final"))));
+  out.Line(fmt::format("  path       {} mm in {} cycles", Fixed(At(r, "path_length_m"), 1, 1e3),
+                       Plain(At(r, "cycles"))));
+  out.Line(fmt::format("  seed       {}", Plain(At(r, "seed"))));
+}
+
+void PrintRotate(Output& out, const Json& r) {
+  out.Line(fmt::format("  angle      {}{} ({} turns) in {} s",
+                       Fixed(At(r, "angle_rad"), 1, kDegrees), out.Degree(),
+                       Fixed(At(r, "turns"), 2), Fixed(At(r, "sim_time_s"), 1)));
+  out.Line(fmt::format("  gait       {} cycles, {} regrasps", Plain(At(r, "gait_cycles")),
+                       Plain(At(r, "regrasps"))));
+  out.Line(fmt::format("  error      at most {} mm, tilt {}{}",
+                       Fixed(At(r, "max_position_error_m"), 1, 1e3),
+                       Fixed(At(r, "max_tilt_rad"), 1, kDegrees), out.Degree()));
+}
+
+void PrintMove(Output& out, const Json& r) {
+  out.Line(fmt::format("  shift      {} mm of {} mm", Vector(At(r, "achieved_offset_m"), 2, 1e3),
+                       Vector(At(r, "offset_m"), 2, 1e3)));
+  out.Line(fmt::format("  turn       {}{} of {}{}",
+                       Vector(At(r, "achieved_rotation_rad"), 1, kDegrees), out.Degree(),
+                       Vector(At(r, "rotation_rad"), 1, kDegrees), out.Degree()));
+  out.Line(fmt::format("  error      at most {} mm, {}{}, in {} s",
+                       Fixed(At(r, "max_position_error_m"), 1, 1e3),
+                       Fixed(At(r, "max_rotation_error_rad"), 1, kDegrees), out.Degree(),
+                       Fixed(At(r, "sim_time_s"), 1)));
+}
+
+/// What became of a move that is done: "done, reached", "ended at a joint limit of middle".
+std::string MoveVerdict(const Json& r) {
+  const std::string end = Plain(At(r, "end")), finger = Plain(At(r, "end_finger"));
+  if (end == "reached") return "done, reached";
+  if (end == "joint_limit") return "ended at a joint limit of " + finger;
+  if (end == "manipulability") return "ended, " + finger + " is near a singular posture";
+  if (end == "excursion") return "ended, " + finger + " is too far from its first place";
+  if (end == "load_margin") return "ended, the load margin is too small";
+  if (end == "object_stuck") return "ended, the object does not follow";
+  return "ended: " + end;
+}
+
+}  // namespace
+
+ExitCode JobExit(const Json& record) {
+  const std::string state = record.value("state", "");
+  if (state == "failed" || state == "cancelled") return kFailed;
+  if (At(record, "converged") == false || At(record, "dropped") == true ||
+      At(record, "reached") == false)
+    return kFailed;
+  return kOk;
+}
+
+void PrintJob(Output& out, const Json& record) {
+  const std::string state = record.value("state", "");
+  const bool ended = state != "queued" && state != "running";
+  const bool good = JobExit(record) == kOk;
+  std::string verdict = state;
+  if (state == "done" && At(record, "converged").is_boolean()) {
+    verdict = (good ? "converged" : "not converged");
+    verdict += fmt::format(" ({})", Plain(At(record, "reason")));
+  } else if (state == "done" && At(record, "dropped") == true) {
+    verdict = "dropped the object";
+  } else if (state == "done" && At(record, "reached").is_boolean()) {
+    verdict = MoveVerdict(record);
+  } else if (!ended) {
+    verdict += fmt::format(" {:.0f} %", 100 * record.value("progress", 0.0));
+  }
+  out.Line(fmt::format("job {}: {} {}", Plain(At(record, "id")),
+                       out.Paint(JobTitle(record), Style::kBold),
+                       out.Paint(verdict, !ended ? Style::kPlain
+                                          : good ? Style::kGood
+                                                 : Style::kBad)));
+  if (At(record, "error").is_string()) out.Line("  error      " + Plain(At(record, "error")));
+  if (const Json& incident = At(record, "incident"); incident.is_object()) {
+    out.Add(Wrap("  cause      " + Plain(At(incident, "cause")), 13));
+    out.Line("  incident   " + Plain(At(incident, "record")) + "    (regrasp plot incident)");
+  }
+  if (ended && record.value("method", "") == "explore" && state == "done")
+    PrintExplore(out, record);
+  if (ended && record.value("method", "") == "rotate" && At(record, "angle_rad").is_number())
+    PrintRotate(out, record);
+  if (ended && record.value("method", "") == "move" && At(record, "end").is_string())
+    PrintMove(out, record);
+  if (At(record, "start_tick").is_number()) {
+    const std::string start = Plain(At(record, "start_tick"));
+    out.Line(ended ? fmt::format("  ticks      {} to {}", start, Plain(At(record, "end_tick")))
+                   : fmt::format("  ticks      from {}", start));
+  }
+}
+
+Json WaitForJob(Context& context, std::int64_t id) {
+  const Interruptible interruptible;
+  ProgressLine line(context.out().human() && !context.options().quiet &&
+                    ::isatty(STDERR_FILENO) == 1);
+  const auto deadline = Deadline(context.options().timeout_s.value_or(0));
+  const std::string how = fmt::format("regrasp job wait {}", id);
+  try {
+    while (true) {
+      const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
+      const double slice = std::clamp(left, 0.0, line.on() ? 0.1 : 60.0);
+      try {
+        return context.client().Call("job.wait", {{"id", id}, {"timeout_s", slice}}, slice + 10);
+      } catch (const CliError& error) {
+        if (error.code != kTimeout || error.rpc_code == 0) throw;
+        if (Clock::now() >= deadline) {
+          throw CliError(kTimeout,
+                         fmt::format("job {} has not ended after {:g} s; it goes on", id,
+                                     *context.options().timeout_s),
+                         how);
+        }
+      }
+      if (line.on())
+        line.Show(ProgressText(context, context.client().Call("job.get", {{"id", id}})));
+    }
+  } catch (const CliError& error) {
+    if (error.code != kInterrupted) throw;
+    throw CliError(kInterrupted, fmt::format("interrupted; job {} goes on", id), how);
+  }
+}
+
+ExitCode StartJob(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  const std::int64_t id = answer.at("job");
+  if (!invocation.Has("wait")) {
+    context.Print(answer, [&] {
+      context.out().Line(fmt::format("job {}: {} started    (regrasp job wait {})", id,
+                                     invocation.command->words, id));
+    });
+    return kOk;
+  }
+  const Json record = WaitForJob(context, id);
+  context.Print(record, [&] { PrintJob(context.out(), record); });
+  return JobExit(record);
+}
+
+}  // namespace regrasp::cli

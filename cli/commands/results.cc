@@ -1,0 +1,68 @@
+// Results: pictures.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/client/context.h"
+#include "cli/commands/run_files.h"
+#include "cli/print/terminal_graphics.h"
+
+namespace regrasp::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+ExitCode Plot(Context& context, const Invocation& invocation) {
+  if (invocation.Has("show") && !context.out().human()) {
+    throw CliError(kUsage, "--show draws for people: it goes with neither --json nor --csv",
+                   "regrasp plot " + Plain(invocation.params["name"]) + " --show");
+  }
+  Json answer = context.Call(invocation);
+  std::string file = Plain(At(answer, "path"));
+  if (invocation.Has("output")) {
+    fs::path target = invocation.Text("output");
+    if (fs::is_directory(target)) target /= Plain(At(answer, "file"));
+    std::error_code error;
+    fs::copy_file(file, target, fs::copy_options::overwrite_existing, error);
+    if (error) {
+      throw CliError(
+          kIo, fmt::format("cannot copy {} to {}: {}", file, target.string(), error.message()),
+          "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
+    }
+    file = target;
+    answer["path"] = fs::absolute(target).string();
+    answer["file"] = target.filename().string();
+  }
+  // Drawn before anything is printed: an error leaves standard output empty.
+  const std::string picture = invocation.Has("show") ? DrawPicture(context, file) : "";
+  context.Print(answer, [&] { context.out().Line(file); });
+  context.out().Add(picture);
+  return kOk;
+}
+
+}  // namespace
+
+std::vector<CommandSpec> ResultCommands() {
+  std::vector<CommandSpec> commands = {MethodCommand(
+      "plot", "Results", Plot,
+      {.positional = {"name"},
+       .hidden = {"file"},
+       .extra = {
+           {.key = "output",
+            .flags = "-o,--output",
+            .metavar = "FILE",
+            .help = "copy the picture there",
+            .default_text = "leave it in the daemon's output directory, print its path"},
+           {.key = "show",
+            .flags = "--show",
+            .metavar = "",
+            .kind = ArgKind::kFlag,
+            .help = "draw it here: kitty or sixel graphics where the terminal can, else blocks; "
+                    "$REGRASP_GRAPHICS: kitty, sixel, blocks, dots"}}})};
+  for (auto* group : {RunFileCommands, CheckpointCommands})
+    for (CommandSpec& command : group()) commands.push_back(std::move(command));
+  return commands;
+}
+
+}  // namespace regrasp::cli

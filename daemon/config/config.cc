@@ -1,0 +1,244 @@
+#include "daemon/config/config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "core/common/nearest_name.h"
+#include "core/protocol/config_path.h"
+#include "daemon/wire/json.h"
+
+namespace regrasp {
+namespace {
+
+std::string DidYouMean(std::string_view wanted, const std::vector<std::string_view>& names) {
+  const std::string_view near = NearestName(wanted, names);
+  return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+/// A value as TOML writes it.
+std::string Written(const toml::node& node) {
+  std::ostringstream text;
+  node.visit([&text](const auto& value) { text << value; });
+  constexpr std::size_t kMost = 60;
+  std::string written = text.str();
+  std::replace(written.begin(), written.end(), '\n', ' ');
+  if (written.size() <= kMost) return written;
+  std::size_t end = kMost;
+  while ((written[end] & 0xC0) == 0x80) --end;  // not within a UTF-8 character
+  return written.substr(0, end) + "...";
+}
+
+struct Reader {
+  const std::string& path;
+  DaemonConfig* config;
+
+  std::string Place(const toml::node& node) const {
+    return fmt::format("{}:{}", path, node.source().begin.line);
+  }
+  [[noreturn]] void Fail(const toml::node& node, const std::string& message) const {
+    throw ConfigError(fmt::format("{}: {}", Place(node), message));
+  }
+
+  void ReadParameter(const std::string& name, const toml::node& node) const {
+    const int index = FindParameter(name);
+    if (index < 0) {
+      std::vector<std::string_view> names;
+      for (const ParameterInfo& info : ParameterTable()) names.push_back(info.name);
+      Fail(node, fmt::format("unknown parameter '{}'{}", name, DidYouMean(name, names)));
+    }
+    const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(index)];
+    const std::string allowed =
+        fmt::format("{} ... {}{}{}", info.min, info.max, info.unit.empty() ? "" : " ", info.unit);
+    Vector3d value = Vector3d::Zero();
+    const auto read = [&](const toml::node& item, int i) {
+      const auto number = item.is_number() ? item.value<double>() : std::nullopt;
+      if (!number || !(*number >= info.min && *number <= info.max))
+        Fail(node, fmt::format("{} = {}: expected {}{}", name, Written(node),
+                               info.size == 1 ? "a number, " : "3 numbers, each ", allowed));
+      value[i] = *number;
+    };
+    if (info.size == 1) {
+      read(node, 0);
+    } else {
+      const toml::array* items = node.as_array();
+      if (!items || items->size() != 3)
+        Fail(node,
+             fmt::format("{} = {}: expected 3 numbers, each {}", name, Written(node), allowed));
+      for (int i = 0; i < 3; ++i) read((*items)[static_cast<std::size_t>(i)], i);
+    }
+    config->parameters.emplace_back(name, value);
+    config->origins["parameters." + name] = Place(node);
+  }
+
+  /// [parameters] may be written with quoted names, dotted keys or sub-tables.
+  void ReadParameters(const toml::table& table, const std::string& prefix) const {
+    for (const auto& [key, node] : table) {
+      const std::string name = prefix + std::string(key.str());
+      if (const toml::table* inner = node.as_table())
+        ReadParameters(*inner, name + ".");
+      else
+        ReadParameter(name, node);
+    }
+  }
+
+  void ReadKey(const ConfigKey& key, const toml::node& node) const {
+    const auto wrong = [&](const char* expected) {
+      Fail(node, fmt::format("{} = {}: expected {}", key.name, Written(node), expected));
+    };
+    std::string text;
+    if (key.kind == KeyKind::kInteger) {
+      if (!node.is_integer()) wrong("an integer");
+      text = std::to_string(*node.value<std::int64_t>());
+    } else if (key.kind == KeyKind::kBool) {
+      if (!node.is_boolean()) wrong("true or false");
+      text = *node.value<bool>() ? "true" : "false";
+    } else if (key.kind == KeyKind::kSpeed && node.is_number()) {
+      text = fmt::format("{}", *node.value<double>());
+    } else {
+      if (!node.is_string())
+        wrong(key.kind == KeyKind::kSpeed ? "a number, or \"max\"" : "a string");
+      text = *node.value<std::string>();
+    }
+    SetKey(config, key, text, Place(node));
+  }
+
+  void Read(const toml::table& root) const {
+    for (const auto& [name, node] : root) {
+      if (name.str() == "parameters") {
+        const toml::table* table = node.as_table();
+        if (!table) Fail(node, "parameters is a table");
+        ReadParameters(*table, "");
+        continue;
+      }
+      const auto key = std::ranges::find(ConfigKeys(), name.str(), &ConfigKey::name);
+      if (key == ConfigKeys().end()) {
+        std::vector<std::string_view> names = {"parameters"};
+        for (const ConfigKey& known : ConfigKeys()) names.push_back(known.name);
+        Fail(node, fmt::format("unknown key '{}'{}", name.str(), DidYouMean(name.str(), names)));
+      }
+      ReadKey(*key, node);
+    }
+  }
+};
+
+/// As TOML writes it; `value` points at `size` numbers.
+std::string Shown(const double* value, int size) {
+  return size == 1 ? fmt::format("{}", value[0])
+                   : fmt::format("[{}, {}, {}]", value[0], value[1], value[2]);
+}
+
+Json Value(const ConfigKey& key, const DaemonConfig& config) {
+  const std::string text = key.get(config);
+  if (key.kind == KeyKind::kInteger) return std::stoll(text);
+  if (key.kind == KeyKind::kBool) return text == "true";
+  if (key.kind == KeyKind::kSpeed && text != "max") return ParseSpeed(text);
+  return text;
+}
+
+}  // namespace
+
+void ReadConfigFile(const std::string& path, DaemonConfig* config) {
+  if (::access(path.c_str(), R_OK) != 0) throw ConfigError(fmt::format("{}: cannot be read", path));
+  try {
+    Reader{path, config}.Read(toml::parse_file(path));
+  } catch (const toml::parse_error& e) {
+    throw ConfigError(fmt::format("{}:{}: {}", path, e.source().begin.line, e.description()));
+  }
+  config->file = path;
+}
+
+DaemonConfig ResolveConfig(const ConfigFlags& flags) {
+  DaemonConfig config;
+  const std::string file = flags.file.empty() ? UsualConfigFile() : flags.file;
+  if (!file.empty()) ReadConfigFile(file, &config);
+  for (const ConfigKey& key : ConfigKeys()) {
+    const std::string variable = VariableOf(key);
+    const char* text = std::getenv(variable.c_str());
+    if (text != nullptr && *text != '\0') SetKey(&config, key, text, "$" + variable);
+  }
+  for (const auto& [name, text] : flags.set) {
+    const ConfigKey& key = *std::ranges::find(ConfigKeys(), name, &ConfigKey::name);
+    SetKey(&config, key, text, FlagOf(key));
+  }
+  return config;
+}
+
+std::string DefaultConfigText() {
+  const DaemonConfig config;
+  std::string text = "# Configuration of regraspd: every key with its built-in value.\n\n";
+  for (const ConfigKey& key : ConfigKeys()) {
+    const std::string value = key.get(config);
+    text += fmt::format("{} = {}  # {}\n", key.name,
+                        key.kind == KeyKind::kText ? fmt::format("\"{}\"", value) : value,
+                        key.sentence);
+  }
+  text +=
+      "\n# Parameters of the simulation and the controller. Mass, friction and gravity come from "
+      "the\n"
+      "# models unless they are set here.\n[parameters]\n";
+  Parameters parameters;
+  for (const ParameterInfo& info : ParameterTable()) {
+    const std::string unit = info.unit.empty() ? "" : fmt::format("[{}] ", info.unit);
+    text += fmt::format("# \"{}\" = {}  # {}{} {} ... {}\n", info.name,
+                        Shown(info.access(parameters), info.size), unit, info.description, info.min,
+                        info.max);
+  }
+  return text;
+}
+
+std::string ConfigJson(const DaemonConfig& config) {
+  const auto origin = [&](const std::string& name, const char* otherwise) -> std::string {
+    const auto it = config.origins.find(name);
+    return it == config.origins.end() ? otherwise : it->second;
+  };
+  Json keys = Json::array(), parameters = Json::array();
+  for (const ConfigKey& key : ConfigKeys())
+    keys.push_back({{"name", key.name},
+                    {"value", Value(key, config)},
+                    {"origin", origin(std::string(key.name), "built in")},
+                    {"variable", VariableOf(key)},
+                    {"flag", FlagOf(key)},
+                    {"reload", key.live},
+                    {"description", key.sentence}});
+  Parameters built_in;
+  for (const ParameterInfo& info : ParameterTable()) {
+    const double* value = info.access(built_in);
+    Vector3d shown(value[0], info.size == 3 ? value[1] : 0, info.size == 3 ? value[2] : 0);
+    for (const auto& [name, set] : config.parameters)
+      if (name == info.name) shown = set;
+    const std::string from = origin("parameters." + std::string(info.name), "");
+    const bool of_model = info.name == "gravity" || info.name.starts_with("object.");
+    Json json = info.size == 1 ? Json(shown.x()) : Json{shown.x(), shown.y(), shown.z()};
+    if (from.empty() && of_model) json = nullptr;
+    parameters.push_back({{"name", info.name},
+                          {"value", std::move(json)},
+                          {"origin", !from.empty() ? from
+                                     : of_model    ? "model"
+                                                   : "built in"},
+                          {"unit", info.unit},
+                          {"reload", true},
+                          {"description", info.description}});
+  }
+  const Json file = config.file.empty() ? Json() : Json(config.file);
+  return Json({{"file", file}, {"keys", std::move(keys)}, {"parameters", std::move(parameters)}})
+      .dump();
+}
+
+std::string DefaultOutputDir() {
+  const auto variable = [](const char* name) -> std::string {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+  };
+  if (const std::string state = variable("XDG_STATE_HOME"); !state.empty())
+    return state + "/regrasp";
+  if (const std::string home = variable("HOME"); !home.empty())
+    return home + "/.local/state/regrasp";
+  return fmt::format("/tmp/regrasp-{}/output", ::geteuid());
+}
+
+}  // namespace regrasp

@@ -1,0 +1,53 @@
+#include "daemon/config/reload.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace regrasp {
+namespace {
+
+/// The value set last, or null.
+const Vector3d* Find(const DaemonConfig& config, const std::string& parameter) {
+  const Vector3d* found = nullptr;
+  for (const auto& [name, value] : config.parameters)
+    if (name == parameter) found = &value;
+  return found;
+}
+
+ReloadCall SetParameterCall(const std::string& name, const Vector3d& value) {
+  const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(FindParameter(name))];
+  const JsonIn json = info.size == 1 ? JsonIn(value.x()) : JsonIn{value.x(), value.y(), value.z()};
+  return {
+      "param.set", {{"name", name}, {"value", json}}, fmt::format("{} = {}", name, json.dump())};
+}
+
+}  // namespace
+
+ReloadPlan PlanReload(const DaemonConfig& running, const DaemonConfig& wanted) {
+  ReloadPlan plan;
+  for (const ConfigKey& key : ConfigKeys()) {
+    const std::string value = key.get(wanted);
+    if (key.get(running) == value) continue;
+    const auto origin = wanted.origins.find(std::string(key.name));
+    const std::string change =
+        fmt::format("{} = {} ({})", key.name, value,
+                    origin == wanted.origins.end() ? "built in" : origin->second);
+    if (!key.live)
+      plan.restart.push_back(change);
+    else if (key.name == "noise")
+      plan.calls.push_back({"noise.set", {{"preset", value}}, change});
+    else
+      plan.at_once.push_back(change);
+  }
+  for (const auto& [name, value] : wanted.parameters) {
+    const Vector3d* before = Find(running, name);
+    if (*Find(wanted, name) == value && !(before && *before == value))
+      plan.calls.push_back(SetParameterCall(name, value));
+  }
+  for (const auto& [name, value] : running.parameters)
+    if (!Find(wanted, name)) plan.restart.push_back(fmt::format("{}: no longer set", name));
+  return plan;
+}
+
+}  // namespace regrasp

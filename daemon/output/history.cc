@@ -1,0 +1,60 @@
+#include "daemon/output/history.h"
+
+namespace regrasp {
+
+void History::Add(const Frame& frame) {
+  // Half a tick of slack: times are multiples of dt, their differences carry rounding.
+  const auto due = [&frame](const auto& kept, double period) {
+    return kept.empty() || frame.time_s - kept.back()->time_s >= period - 1e-4;
+  };
+  if (!due(recent_, kRecentPeriod)) return;
+  recent_.push_back(std::make_shared<const Frame>(frame));
+  if (recent_.size() > kRecent) recent_.pop_front();
+  if (!due(fine_, kFinePeriod)) return;
+  fine_.push_back(recent_.back());
+  AddToExploration(fine_.back());
+  if (fine_.size() <= kFine) return;
+  if (aged_++ % kCoarseEvery == 0) coarse_.push_back(fine_.front());
+  fine_.pop_front();
+  if (coarse_.size() > kCoarse) coarse_.pop_front();
+}
+
+void History::AddToExploration(const std::shared_ptr<const Frame>& frame) {
+  const bool exploring = frame->state == SessionState::kExploring;
+  const bool another =
+      exploring && exploring_ && explorations_.back().back()->job.id != frame->job.id;
+  if (exploring && (!exploring_ || another)) {
+    explorations_.emplace_back();
+    if (explorations_.size() > kExplorations) explorations_.pop_front();
+  }
+  exploring_ = exploring;
+  if (exploring && explorations_.back().size() < kExplorationFrames)
+    explorations_.back().push_back(frame);
+}
+
+void History::Add(const Event& event) {
+  events_.push_back(event);
+  if (events_.size() > kEvents) events_.pop_front();
+}
+
+void History::Clear() {
+  fine_.clear();
+  recent_.clear();
+  coarse_.clear();
+  events_.clear();
+  aged_ = 0;
+  exploring_ = false;
+}
+
+std::vector<std::shared_ptr<const Frame>> History::Frames(double last_s) const {
+  std::vector<std::shared_ptr<const Frame>> frames;
+  if (fine_.empty()) return frames;
+  const double since = last_s > 0 ? fine_.back()->time_s - last_s : -1.0;
+  frames.reserve(size());
+  for (const auto* part : {&coarse_, &fine_})
+    for (const auto& frame : *part)
+      if (frame->time_s >= since) frames.push_back(frame);
+  return frames;
+}
+
+}  // namespace regrasp

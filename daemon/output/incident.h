@@ -1,0 +1,78 @@
+#pragma once
+
+/// What led to a drop (or to a fault of the simulation): the frames and events of the last two
+/// seconds, what follows from them, and one sentence that says it. I/O thread; afterwards constant.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/hand/hand_model.h"
+#include "core/session/frame.h"
+#include "core/session/parameters.h"
+#include "daemon/wire/json.h"
+
+namespace regrasp {
+
+/// Length of the record [s].
+inline constexpr double kIncidentWindow = 2.0;
+
+/// What an incident is made of. Frames and events may reach beyond the window on both sides.
+struct IncidentSource {
+  Event event;                                       ///< kDropped or kFault
+  std::vector<std::shared_ptr<const Frame>> frames;  ///< of this run, oldest first
+  std::vector<Event> events;                         ///< of this run, oldest first
+  JobRecord job;                                     ///< the newest; id 0: none
+  Parameters parameters;                             ///< in force at the event
+  std::string object;                                ///< name of the object
+  double dt = 1e-3;                                  ///< of a tick [s]
+};
+
+/// A finger that no longer touched the object at the end of the window.
+struct ContactEnd {
+  int finger = -1;
+  double time_s = 0;    ///< of the last frame in which it touched
+  bool lifted = false;  ///< it regrasped: the gait had taken it off
+};
+
+struct Incident {
+  Event event;
+  double time_s = 0;                                 ///< of the event
+  std::vector<std::shared_ptr<const Frame>> frames;  ///< up to the event
+  std::vector<Event> events;                         ///< in the window, the event's tick included
+  JobRecord job;                                     ///< the one it ended; id 0: none
+  Parameters parameters;
+  std::string object;
+  double dt = 1e-3;
+
+  // What follows. Times in [s] of the simulation.
+  SessionState state = SessionState::kIdle;  ///< before the event
+  std::vector<ContactEnd> ends;              ///< in order of time
+  double onset_s = 0;  ///< the first of `ends` that was not lifted; the event's time when all touch
+  bool has_margin = false;  ///< the next two are known
+  double least_margin = 0;  ///< smallest load margin of the grasp until the onset [N]
+  double least_margin_s = 0;
+  int lifted = -1;  ///< the finger that the gait had taken off at the onset; -1: none
+  std::vector<Event> disturbances;  ///< pushes and changes of parameters or noise in the window
+  std::string cause;                ///< the sentence
+};
+
+/// Takes the window out of `source` and draws the conclusions.
+Incident MakeIncident(const IncidentSource& source, const HandModel& hand);
+
+/// The record as it is written; docs/incidents.md lists the fields.
+Json IncidentJson(const Incident& incident, const HandModel& hand);
+
+/// "incident-4211" for the incident of tick 4211: the record is that with .json, the picture with
+/// .png.
+std::string IncidentName(std::int64_t tick);
+
+/// Writes the record. Throws std::runtime_error with path and cause.
+void WriteIncident(const Incident& incident, const HandModel& hand, const std::string& path);
+
+/// Draws the picture: the newest `last_s` seconds of the window, 0: all. Throws what PlotIncident
+/// throws.
+void DrawIncident(const Incident& incident, const HandModel& hand, double last_s,
+                  const std::string& path);
+
+}  // namespace regrasp

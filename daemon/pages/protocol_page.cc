@@ -1,0 +1,114 @@
+#include "daemon/pages/protocol_page.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "core/protocol/errors.h"
+#include "core/protocol/methods.h"
+
+namespace regrasp {
+namespace {
+
+constexpr const char* kIntroduction = R"(# Protocol
+
+<!-- Made by `regraspd --print-protocol`. Change core/protocol/methods.cc or daemon/pages/protocol_page.cc, not this page. -->
+
+JSON-RPC 2.0 over a Unix stream socket: UTF-8, one object (or one batch of at most {batch}) per line. Try it:
+
+```
+$ echo '{{"jsonrpc":"2.0","id":1,"method":"status"}}' | nc -U -N "$XDG_RUNTIME_DIR/regrasp/regrasp.sock"
+```
+
+```python
+import json, os, socket
+s = socket.socket(socket.AF_UNIX)
+s.connect(os.environ["XDG_RUNTIME_DIR"] + "/regrasp/regrasp.sock")
+s.sendall(b'{{"jsonrpc":"2.0","id":1,"method":"grasp"}}\n')
+for line in s.makefile():
+    print(json.loads(line))
+```
+
+- **Lines.** A trailing `\r` and blank lines are ignored. A line has at most {bytes} bytes and {depth} nested levels;
+  a longer line is answered with -32011 and the connection is closed.
+- **Requests.** Parameters are given by name. `id` is a string of at most {id} bytes or an integer within ±2^53; a
+  request without `id` is a notification and gets no answer. Duplicate keys, unknown parameters and numbers that
+  are not finite are errors, and nothing has changed.
+- **Answers** come in the order of the requests of a connection. The answer to a command is sent when the command
+  has been taken up, within one tick: what is asked next sees its effect. While the simulation is paused,
+  commands wait for the next tick stepped; `reset` acts at once.
+- **Jobs.** Long work answers `{{"job": n}}` at once. `job.wait` is the only answer that others may overtake.
+- **Subscriptions.** `subscribe` answers `{{"sub": n}}`; then come notifications `event` with `sub`, `topic`, `seq` (from 1),
+  `dropped` (samples left out so far), `t_s` (simulated time) and the fields of the topic. Samples are sent when there
+  is something new, at most `rate_hz` times per second. Events are queued, samples are not.
+- **Slow clients.** A client with more than 1 MiB of unread answers, or none of them read for {stall} s, is
+  disconnected.
+- **Files.** Names only; they are written to `output_dir` (see `status`).
+- **Units.** Field names carry them: `_m`, `_rad`, `_n`, `_s`, ... Vectors are in the world frame W, which is the
+  palm's frame; manipulability is in 1e-4 m³.
+- **Access.** The socket is 0600 in a directory 0700; clients of other users (root excepted) get -32005.
+
+)";
+
+std::string Limits(const ParamSpec& spec) {
+  const bool low = spec.min > -1e299, high = spec.max < 1e299;
+  if (!spec.values.empty()) return fmt::format("`{}`", fmt::join(spec.values, "`, `"));
+  if (spec.names != NameSource::kNone) return fmt::format("a {} name", Name(spec.names));
+  if (spec.max == kMaxSafeInteger) return fmt::format("{} ... 2^53", spec.min);
+  if (low && high) return fmt::format("{} ... {}", spec.min, spec.max);
+  return {};
+}
+
+std::string MethodSection(const MethodSpec& method) {
+  std::string text = fmt::format(
+      "### `{}`\n\n{}{}. Command line: `regrasp {}`.\n", method.name,
+      static_cast<char>(std::toupper(static_cast<unsigned char>(method.sentence.front()))),
+      method.sentence.substr(1), method.words);
+  if (!method.params.empty())
+    text +=
+        "\n| parameter | type | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
+  for (const ParamSpec& spec : method.params)
+    text +=
+        fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", spec.name, Name(spec.type), spec.unit,
+                    Limits(spec), spec.required ? "required" : spec.default_text, spec.sentence);
+  text += fmt::format("\nAnswer: {}{}.\n\n", method.result,
+                      method.job ? " (a number; the record is in `job.get`)" : "");
+  return text;
+}
+
+}  // namespace
+
+std::string ProtocolPage() {
+  using fmt::arg;
+  std::string page = fmt::format(kIntroduction, arg("batch", kMaxBatch),
+                                 arg("bytes", kMaxRequestBytes), arg("depth", kMaxRequestDepth),
+                                 arg("id", kMaxIdBytes), arg("stall", kMaxOutputStallSeconds));
+  page += "## Methods\n\n";
+  for (const MethodSpec& method : MethodTable()) page += MethodSection(method);
+  page +=
+      "## A job's record\n\n"
+      "`id, method, state` (`queued`, `running`, `done`, `failed`, `cancelled`)`, error, progress` "
+      "(0 ... 1)`, "
+      "start_tick, end_tick, finished`. An `explore` job adds `finger, criterion, estimator, seed, "
+      "converged, reason` (`gradient`, `max_cycles`, `contact_lost`, `dropped`, `cancelled`, "
+      "`object_moved`)`, "
+      "cycles, "
+      "phi_initial, phi_final, phi_true_initial, phi_true_final, path_length_m`; the two "
+      "`phi_true` are "
+      "noise-free, from the simulator, for judging only. A `move` job adds `offset_m[3], "
+      "rotation_rad[3]` (wanted)`, achieved_offset_m[3], achieved_rotation_rad[3], reached, end` "
+      "(`reached`, `joint_limit`, `object_stuck`, `manipulability`, `excursion`, `load_margin`, "
+      "`stopped`, `dropped`; null while it moves, and where it never moved or the simulation "
+      "faulted)`, end_finger` (whose limit it was, or null)`, "
+      "max_position_error_m, max_rotation_error_rad` (object against its reference)`, sim_time_s`; "
+      "what was achieved and the errors are noise-free, too.\n\n";
+  page +=
+      "## Errors\n\n`{\"code\", \"message\", \"data\": {\"hint\", \"param\", \"allowed\"}}`\n\n"
+      "| code | name | `regrasp` exits with | when |\n|---|---|---|---|\n";
+  for (const ErrorInfo& info : ErrorTable())
+    page += fmt::format("| {} | {} | {} | {} |\n", static_cast<int>(info.code), info.name,
+                        static_cast<int>(info.exit_code), info.sentence);
+  return page;
+}
+
+}  // namespace regrasp

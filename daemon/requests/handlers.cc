@@ -1,0 +1,63 @@
+#include "daemon/requests/handlers.h"
+
+#include <algorithm>
+#include <array>
+
+namespace regrasp {
+namespace {
+
+struct Entry {
+  std::string_view method;
+  Handler handler;
+};
+
+constexpr std::array kHandlers = {
+    Entry{"checkpoint.list", handlers::CheckpointList},
+    Entry{"checkpoint.restore", handlers::CheckpointRestore},
+    Entry{"checkpoint.save", handlers::CheckpointSave},
+    Entry{"contacts", handlers::Contacts},
+    Entry{"describe", handlers::Describe},
+    Entry{"events", handlers::Events},
+    Entry{"explore", handlers::Explore},
+    Entry{"grasp", handlers::Grasp},
+    Entry{"hello", handlers::Hello},
+    Entry{"job.cancel", handlers::JobCancel},
+    Entry{"job.get", handlers::JobGet},
+    Entry{"job.list", handlers::JobList},
+    Entry{"job.wait", handlers::JobWait},
+    Entry{"joints", handlers::Joints},
+    Entry{"move", handlers::Move},
+    Entry{"noise.get", handlers::NoiseGet},
+    Entry{"noise.set", handlers::NoiseSet},
+    Entry{"param.get", handlers::ParamGet},
+    Entry{"param.set", handlers::ParamSet},
+    Entry{"pause", handlers::Pause},
+    Entry{"plot", handlers::Plot},
+    Entry{"push", handlers::Push},
+    Entry{"quality", handlers::Quality},
+    Entry{"record.list", handlers::RecordList},
+    Entry{"record.start", handlers::RecordStart},
+    Entry{"record.stop", handlers::RecordStop},
+    Entry{"release", handlers::Release},
+    Entry{"reset", handlers::Reset},
+    Entry{"resume", handlers::Resume},
+    Entry{"rotate", handlers::Rotate},
+    Entry{"shutdown", handlers::Shutdown},
+    Entry{"status", handlers::Status},
+    Entry{"step", handlers::Step},
+    Entry{"stop", handlers::Stop},
+    Entry{"subscribe", handlers::Subscribe},
+    Entry{"truth", handlers::Truth},
+    Entry{"unsubscribe", handlers::Unsubscribe},
+    Entry{"version", handlers::VersionOf},
+};
+static_assert(std::ranges::is_sorted(kHandlers, {}, &Entry::method));
+
+}  // namespace
+
+Handler FindHandler(std::string_view method) {
+  const auto it = std::ranges::lower_bound(kHandlers, method, {}, &Entry::method);
+  return it != kHandlers.end() && it->method == method ? it->handler : nullptr;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,64 @@
+#pragma once
+
+/// The handlers, by theme; handlers.cc lists them by method name.
+
+#include "daemon/requests/service.h"
+
+namespace regrasp {
+
+Json StatusJson(Service& service);
+
+namespace handlers {
+
+// simulation.cc
+Outcome Explore(Service&, const Params&, Client&);
+Outcome Grasp(Service&, const Params&, Client&);
+Outcome Move(Service&, const Params&, Client&);
+Outcome NoiseGet(Service&, const Params&, Client&);
+Outcome NoiseSet(Service&, const Params&, Client&);
+Outcome ParamGet(Service&, const Params&, Client&);
+Outcome ParamSet(Service&, const Params&, Client&);
+Outcome Pause(Service&, const Params&, Client&);
+Outcome Push(Service&, const Params&, Client&);
+Outcome Release(Service&, const Params&, Client&);
+Outcome Reset(Service&, const Params&, Client&);
+Outcome Resume(Service&, const Params&, Client&);
+Outcome Rotate(Service&, const Params&, Client&);
+Outcome Step(Service&, const Params&, Client&);
+Outcome Stop(Service&, const Params&, Client&);
+
+// inspect.cc
+Outcome Contacts(Service&, const Params&, Client&);
+Outcome Describe(Service&, const Params&, Client&);
+Outcome Events(Service&, const Params&, Client&);
+Outcome Hello(Service&, const Params&, Client&);
+Outcome Joints(Service&, const Params&, Client&);
+Outcome Quality(Service&, const Params&, Client&);
+Outcome Shutdown(Service&, const Params&, Client&);
+Outcome Status(Service&, const Params&, Client&);
+Outcome Subscribe(Service&, const Params&, Client&);
+Outcome Truth(Service&, const Params&, Client&);
+Outcome Unsubscribe(Service&, const Params&, Client&);
+Outcome VersionOf(Service&, const Params&, Client&);
+
+// job_handlers.cc
+Outcome JobCancel(Service&, const Params&, Client&);
+Outcome JobGet(Service&, const Params&, Client&);
+Outcome JobList(Service&, const Params&, Client&);
+Outcome JobWait(Service&, const Params&, Client&);
+
+// checkpoints.cc
+Outcome CheckpointList(Service&, const Params&, Client&);
+Outcome CheckpointRestore(Service&, const Params&, Client&);
+Outcome CheckpointSave(Service&, const Params&, Client&);
+
+// recordings.cc
+Outcome RecordList(Service&, const Params&, Client&);
+Outcome RecordStart(Service&, const Params&, Client&);
+Outcome RecordStop(Service&, const Params&, Client&);
+
+// results.cc
+Outcome Plot(Service&, const Params&, Client&);
+
+}  // namespace handlers
+}  // namespace regrasp

@@ -1,0 +1,163 @@
+// Requests that only look, and those about the connection itself.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/journal/journal.h"
+#include "daemon/requests/handlers.h"
+#include "daemon/wire/frame_json.h"
+
+namespace regrasp {
+
+Json StatusJson(Service& service) {
+  const Published& newest = service.newest();
+  const Frame& frame = newest.frame;
+  Json job;
+  if (const JobRecord* known = service.jobs().Find(frame.job.id)) job = service.JobAnswer(*known);
+  if (const JobRecord* pending = service.jobs().Unfinished()) job = service.JobAnswer(*pending);
+  const double speed = service.speed();
+  const auto uptime = std::chrono::steady_clock::now() - service.started();
+  return {
+      {"version", Version()},
+      {"protocol", kWireVersion},
+      {"state", Name(frame.state)},
+      {"paused", newest.paused},
+      {"tick", frame.tick},
+      {"time_s", frame.time_s},
+      {"dt_s", service.dt()},
+      {"state_hash", HashText(frame.state_hash)},
+      {"real_time_factor", service.real_time_factor()},
+      {"tick_p99_s", service.control().tick_p99()},
+      {"lateness_p99_s", service.control().lateness_p99()},
+      {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
+      {"seed", frame.seed},
+      {"hand", service.hand().name},
+      {"object", service.accepted.object->name},
+      {"stand_in", frame.stand_in},
+      {"job", std::move(job)},
+      {"incident", service.incident_summary()},
+      {"gait", GaitJson(frame.gait, service.hand())},
+      {"noise", NoiseJson(service.accepted.noise)},
+      {"recording", service.recorder ? Json(service.recorder->path().filename().string()) : Json()},
+      {"clients", service.host().clients()},
+      {"backlog", service.control().backlog()},
+      {"frames_dropped", service.control().dropped()},
+      {"uptime_s", std::chrono::duration<double>(uptime).count()},
+      {"output_dir", service.config().output_dir.string()}};
+}
+
+namespace handlers {
+namespace {
+
+Json ParamDescription(Service& service, const ParamSpec& spec) {
+  Json json = {{"name", spec.name},
+               {"type", Name(spec.type)},
+               {"required", spec.required},
+               {"description", spec.sentence}};
+  if (!spec.unit.empty()) json["unit"] = spec.unit;
+  if (spec.min > -1e299) json["min"] = spec.min;
+  if (spec.max < 1e299) json["max"] = spec.max;
+  if (!spec.values.empty()) json["values"] = spec.values;
+  if (spec.names != NameSource::kNone) json["values"] = service.Names(spec.names);
+  if (!spec.required) json["default"] = spec.default_text;
+  return json;
+}
+
+Json MethodDescription(Service& service, const MethodSpec& method) {
+  Json params = Json::array();
+  for (const ParamSpec& spec : method.params) params.push_back(ParamDescription(service, spec));
+  return {{"name", method.name}, {"command", method.words},     {"description", method.sentence},
+          {"job", method.job},   {"params", std::move(params)}, {"result", method.result}};
+}
+
+}  // namespace
+
+Outcome Status(Service& service, const Params&, Client&) { return {.result = StatusJson(service)}; }
+Outcome Contacts(Service& service, const Params&, Client&) {
+  return {.result = service.Topic("contacts")};
+}
+Outcome Joints(Service& service, const Params&, Client&) {
+  return {.result = service.Topic("joints")};
+}
+Outcome Quality(Service& service, const Params&, Client&) {
+  return {.result = service.Topic("quality")};
+}
+Outcome Truth(Service& service, const Params&, Client&) {
+  return {.result = service.Topic("truth")};
+}
+
+Outcome Describe(Service& service, const Params& params, Client&) {
+  Json methods = Json::array();
+  const std::string only = params.String("method");
+  for (const MethodSpec& method : MethodTable())
+    if (only.empty() || method.name == only) methods.push_back(MethodDescription(service, method));
+  if (methods.empty()) {
+    std::vector<std::string> names;
+    for (const MethodSpec& method : MethodTable()) names.emplace_back(method.name);
+    throw RpcException(RpcError{ErrorCode::kNotFound,
+                                fmt::format("no method '{}'", only.substr(0, 64)),
+                                DidYouMean(only, names), "method", std::move(names)});
+  }
+  Json errors = Json::array();
+  for (const ErrorInfo& info : ErrorTable())
+    errors.push_back({{"code", static_cast<int>(info.code)},
+                      {"name", info.name},
+                      {"exit_code", static_cast<int>(info.exit_code)},
+                      {"description", info.sentence}});
+  return {.result = {{"version", Version()},
+                     {"protocol", kWireVersion},
+                     {"methods", std::move(methods)},
+                     {"errors", std::move(errors)}}};
+}
+
+Outcome Events(Service& service, const Params& params, Client&) {
+  const auto& events = service.events();
+  const auto count =
+      std::min(events.size(), static_cast<std::size_t>(params.Integer("count", 100)));
+  Json list = Json::array();
+  for (std::size_t i = events.size() - count; i < events.size(); ++i)
+    list.push_back(EventJson(events[i], service.hand(), service.dt()));
+  return {.result = {{"events", std::move(list)}, {"dropped", service.control().dropped()}}};
+}
+
+Outcome Hello(Service&, const Params& params, Client&) {
+  const auto [lowest, highest] = params.Pair("protocol");
+  if (kWireVersion < lowest || kWireVersion > highest)
+    throw RpcException(RpcError{ErrorCode::kProtocolVersion,
+                                fmt::format("this daemon speaks protocol {}, the client {} to {}",
+                                            kWireVersion, lowest, highest),
+                                "use programs of one version",
+                                "protocol",
+                                {std::to_string(kWireVersion)}});
+  return {.result = {{"protocol", kWireVersion}, {"version", Version()}, {"server", "regraspd"}}};
+}
+
+Outcome VersionOf(Service&, const Params&, Client&) {
+  return {.result = {{"version", Version()}, {"protocol", kWireVersion}}};
+}
+
+Outcome Shutdown(Service& service, const Params&, Client&) {
+  service.host().Shutdown();
+  return {.result = {{"stopping", true}, {"activated", service.host().activated()}}};
+}
+
+Outcome Subscribe(Service&, const Params& params, Client& client) {
+  return {
+      .result = {{"sub", client.Subscribe(params.String("topic"), params.Number("rate_hz", 10))}}};
+}
+
+Outcome Unsubscribe(Service&, const Params& params, Client& client) {
+  const std::int64_t sub = params.Integer("sub", 0);
+  Json last = client.Unsubscribe(sub);
+  if (last.is_null())
+    throw RpcException(RpcError{ErrorCode::kNotFound,
+                                fmt::format("no subscription {}", sub),
+                                "subscriptions belong to their connection",
+                                "sub",
+                                {}});
+  return {.result = std::move(last)};
+}
+
+}  // namespace handlers
+}  // namespace regrasp

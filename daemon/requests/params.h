@@ -1,0 +1,44 @@
+#pragma once
+
+/// The parameters of one request, checked against the method table before any handler sees them.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/common/frames.h"
+#include "core/protocol/methods.h"
+#include "daemon/wire/json.h"
+#include "daemon/wire/rpc.h"
+
+namespace regrasp {
+
+/// The names a source stands for at this moment.
+using NameLookup = std::function<std::vector<std::string>(NameSource)>;
+
+/// Throws RpcException: unknown parameter (with the nearest name), missing, wrong type, out of
+/// range, not an allowed word. After construction every accessor's type is certain.
+class Params {
+ public:
+  Params(const MethodSpec& method, const JsonIn& values, const NameLookup& names);
+
+  bool Has(std::string_view name) const;
+  double Number(std::string_view name, double fallback) const;
+  std::int64_t Integer(std::string_view name, std::int64_t fallback) const;
+  bool Bool(std::string_view name, bool fallback) const;
+  std::string String(std::string_view name, const std::string& fallback = {}) const;
+  /// A kVector3 or kNumberOrVector3; the latter's single number comes as (x, 0, 0).
+  Vector3d Vector(std::string_view name, const Vector3d& fallback = Vector3d::Zero()) const;
+  /// How many numbers were given: 1 or 3 for kNumberOrVector3.
+  int Size(std::string_view name) const;
+  std::pair<int, int> Pair(std::string_view name) const;
+
+ private:
+  const JsonIn* Find(std::string_view name) const;
+  const JsonIn& values_;
+};
+
+/// "did you mean 'x'?", or "" when nothing is near.
+std::string DidYouMean(std::string_view wanted, const std::vector<std::string>& names);
+
+}  // namespace regrasp

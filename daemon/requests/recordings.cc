@@ -1,0 +1,113 @@
+// Run files.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+
+#include "daemon/output/files.h"
+#include "daemon/requests/handlers.h"
+
+namespace regrasp::handlers {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kDefaultRate = 25;  // [Hz]
+
+std::string FreeName(const fs::path& directory) {
+  for (int number = 1;; ++number)
+    if (std::string name = fmt::format("run-{:03}.mcap", number); !fs::exists(directory / name))
+      return name;
+}
+
+/// Whether the file ends as a finished one does.
+bool Complete(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  char end[8] = {};
+  in.seekg(-8, std::ios::end);
+  in.read(end, sizeof end);
+  return in && std::string_view(end, sizeof end) == "\x89MCAP0\r\n";
+}
+
+}  // namespace
+
+Outcome RecordStart(Service& service, const Params& params, Client&) {
+  if (service.recorder)
+    throw RpcException(
+        ErrorCode::kBadState,
+        fmt::format("{} is being recorded", service.recorder->path().filename().string()),
+        "regrasp record stop");
+  const fs::path& directory = service.config().output_dir;
+  const double rate_hz = params.Number("rate_hz", kDefaultRate);
+  const std::string file =
+      CheckedFileName(params.Has("file") ? params.String("file") : FreeName(directory), "file",
+                      {".mcap"}, "run.mcap");
+  try {
+    fs::create_directories(directory);
+    service.recorder =
+        std::make_shared<Recorder>(directory / file, rate_hz, service.journal(), service.run());
+  } catch (const std::exception& e) {
+    throw RpcException(RpcError{
+        ErrorCode::kIo, e.what(), "another name, or regrasp record start without one", "file", {}});
+  }
+  service.recorder->Add(service.newest());
+  return {.result = {{"file", file},
+                     {"path", (directory / file).string()},
+                     {"rate_hz", rate_hz},
+                     {"tick", service.newest().frame.tick},
+                     {"commands", service.journal().entries.size()}}};
+}
+
+Outcome RecordStop(Service& service, const Params&, Client&) {
+  if (!service.recorder)
+    throw RpcException(ErrorCode::kBadState, "nothing is being recorded", "regrasp record start");
+  Outcome outcome;
+  outcome.begin = [&service](Done done) {
+    // What has happened until now belongs to it.
+    service.Mark([&service, done](const JournalNews&) {
+      const std::shared_ptr<Recorder> recorder = std::move(service.recorder);
+      if (!recorder) {  // another client was faster
+        const RpcError error{
+            ErrorCode::kBadState, "nothing is being recorded", "regrasp record start", {}, {}};
+        return done({}, &error);
+      }
+      const auto finish = [recorder, done] {
+        const Recorder::Numbers numbers = recorder->numbers();
+        if (!numbers.failure.empty()) {
+          const RpcError error{ErrorCode::kIo, numbers.failure, "regrasp record list", {}, {}};
+          return done({}, &error);
+        }
+        done({{"file", recorder->path().filename().string()},
+              {"path", recorder->path().string()},
+              {"messages", numbers.messages},
+              {"bytes", numbers.bytes},
+              {"dropped", numbers.dropped}},
+             nullptr);
+      };
+      if (!service.host().Background([recorder] { recorder->Finish(); }, finish)) {
+        recorder->Finish();
+        finish();
+      }
+    });
+  };
+  return outcome;
+}
+
+Outcome RecordList(Service& service, const Params&, Client&) {
+  std::vector<fs::path> paths;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(service.config().output_dir, ignored))
+    if (entry.path().extension() == ".mcap") paths.push_back(entry.path());
+  std::ranges::sort(paths);
+  Json list = Json::array();
+  for (const fs::path& path : paths)
+    list.push_back({{"file", path.filename().string()},
+                    {"bytes", fs::file_size(path, ignored)},
+                    {"complete", Complete(path)},
+                    {"recording", service.recorder && service.recorder->path() == path}});
+  return {.result = {{"recordings", std::move(list)}}};
+}
+
+}  // namespace regrasp::handlers

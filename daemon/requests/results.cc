@@ -1,0 +1,138 @@
+// Requests that produce files.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+
+#include "daemon/output/files.h"
+#include "daemon/output/output_file.h"
+#include "daemon/requests/handlers.h"
+#include "snapshots/snapshots.h"
+
+namespace regrasp::handlers {
+namespace {
+
+/// Everything the worker needs, so that it shares nothing with the I/O thread.
+struct Job {
+  std::string name, file;
+  std::filesystem::path directory;
+  std::vector<std::shared_ptr<const Frame>> frames;
+  std::vector<Event> events;
+  std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;  ///< comparison
+  std::shared_ptr<const Incident> incident;                             ///< incident
+  HandModel hand;
+  std::shared_ptr<const ObjectModel> object;
+  PlotOptions options;
+  std::uintmax_t bytes = 0;
+  std::string failure;
+};
+
+std::vector<Frame> Copy(const std::vector<std::shared_ptr<const Frame>>& frames) {
+  std::vector<Frame> copy;
+  copy.reserve(frames.size());
+  for (const auto& frame : frames) copy.push_back(*frame);
+  return copy;
+}
+
+/// Figure 2: a curve per exploration, named by its criterion; numbered when that does not tell them
+/// apart.
+void DrawComparison(const Job& job, const std::string& path) {
+  std::vector<std::vector<Frame>> frames;
+  std::vector<LabelledRun> runs;
+  for (const auto& exploration : job.explorations) frames.push_back(Copy(exploration));
+  for (const auto& run : frames)
+    runs.push_back({std::string(Name(run.back().job.explore.criterion)), run});
+  if (std::ranges::all_of(runs, [&](const auto& r) { return r.label == runs[0].label; }))
+    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].label += fmt::format(" ({})", i + 1);
+  PlotQualityComparison(runs, job.hand, job.options, path);
+}
+
+void DrawInto(const Job& job, const std::string& path) {
+  if (job.name == "incident")
+    return DrawIncident(*job.incident, job.hand, job.options.last_s, path);
+  const std::vector<Frame> history = Copy(job.frames);
+  if (job.name == "comparison")
+    DrawComparison(job, path);
+  else if (job.name == "contacts")
+    PlotContacts(history, job.hand, *job.object, job.options, path);
+  else if (job.name == "gait")
+    PlotGait(history, job.events, job.hand, job.options, path);
+  else if (job.name == "scene")
+    PlotScene(history.back(), job.hand, *job.object, job.options, path);
+  else
+    PlotQuality(history, job.events, job.hand, job.options, path);
+}
+
+void Draw(Job* job) {
+  try {
+    job->bytes = WriteOutput(job->directory / job->file,
+                             [job](const std::string& draft) { DrawInto(*job, draft); });
+  } catch (const std::exception& e) {
+    job->failure = e.what();
+  }
+}
+
+}  // namespace
+
+Outcome Plot(Service& service, const Params& params, Client&) {
+  const auto job = std::make_shared<Job>();
+  job->name = params.String("name");
+  job->file = CheckedFileName(params.String("file", job->name + ".png"), "file",
+                              {".png", ".jpg", ".jpeg"}, "quality.png");
+  job->options.last_s = params.Number("last_s", 0);
+  job->options.object_name = service.accepted.object->name;
+  job->frames = service.history().Frames(job->options.last_s);
+  if (job->name == "scene") {
+    job->frames = {std::make_shared<const Frame>(service.newest().frame)};
+    job->options.last_s = 0;
+  }
+  if (job->name == "incident") {
+    job->incident = service.incident();
+    if (!job->incident)
+      throw RpcException(ErrorCode::kNotFound,
+                         "no incident: nothing was dropped since this daemon started",
+                         "regrasp plot quality");
+    job->frames = job->incident->frames;
+  }
+  if (job->frames.empty())
+    throw RpcException(ErrorCode::kBadState, "nothing has happened yet", "regrasp grasp");
+  if (job->name == "comparison") {
+    job->explorations = service.history().Explorations();
+    if (job->explorations.size() < History::kExplorations)
+      throw RpcException(ErrorCode::kBadState,
+                         fmt::format("a comparison shows the last {} explorations, there are {}",
+                                     History::kExplorations, job->explorations.size()),
+                         "regrasp explore ring --wait, then another with --criterion combined");
+    job->frames = job->explorations.back();
+  }
+  job->events = service.history().Events();
+  job->hand = service.hand();
+  job->object = service.accepted.object;
+  job->directory = service.config().output_dir;
+  const std::int64_t tick = job->incident ? job->incident->event.tick : job->frames.back()->tick;
+
+  Outcome outcome;
+  outcome.begin = [&service, job, tick](Done done) {
+    const auto finish = [job, tick, done] {
+      if (!job->failure.empty()) {
+        const RpcError error{ErrorCode::kIo, job->failure, "look at output_dir in status", {}, {}};
+        return done({}, &error);
+      }
+      done({{"file", job->file},
+            {"path", (job->directory / job->file).string()},
+            {"bytes", job->bytes},
+            {"tick", tick}},
+           nullptr);
+    };
+    if (!service.host().Background([job] { Draw(job.get()); }, finish)) {
+      const RpcError error{
+          ErrorCode::kBusy, "too many pictures are being drawn", "try again later", {}, {}};
+      done({}, &error);
+    }
+  };
+  return outcome;
+}
+
+}  // namespace regrasp::handlers

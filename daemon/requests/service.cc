@@ -1,0 +1,247 @@
+#include "daemon/requests/service.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "daemon/output/incident.h"
+#include "daemon/output/output_file.h"
+#include "daemon/requests/handlers.h"
+#include "daemon/wire/frame_json.h"
+
+namespace regrasp {
+namespace {
+
+constexpr std::size_t kMaxBacklog = 64;    // commands that wait for a tick
+constexpr std::size_t kEventsKept = 1000;  // for `events`
+constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
+
+}  // namespace
+
+std::string_view Version() { return REGRASP_VERSION; }
+
+Service::Service(ServiceConfig config, Host* host)
+    : config_(std::move(config)), host_(host), control_(config_.control) {
+  const SessionConfig& session = config_.control.session;
+  accepted.parameters = session.parameters;
+  accepted.noise = session.noise;
+  accepted.seed = session.seed;
+  accepted.object = std::make_shared<const ObjectModel>(session.model.object);
+  accepted.paused = config_.control.paused;
+  Drain();
+}
+
+Outcome Service::Call(const std::string& method, const JsonIn& params, Client* client) {
+  const MethodSpec* spec = FindMethod(method);
+  const Handler handler = spec ? FindHandler(method) : nullptr;
+  if (!handler) {
+    std::vector<std::string> names;
+    for (const MethodSpec& known : MethodTable()) names.emplace_back(known.name);
+    std::string hint = DidYouMean(method, names);
+    if (hint.empty()) hint = "call describe for the methods";
+    throw RpcException(ErrorCode::kMethodNotFound,
+                       fmt::format("no method '{}'", method.substr(0, 64)), std::move(hint));
+  }
+  const Params checked(*spec, params, [this](NameSource source) { return Names(source); });
+  return handler(*this, checked, *client);
+}
+
+std::vector<Event> Service::Drain() {
+  // The control thread pushes a frame before the events and jobs it shows, so those are taken
+  // first.
+  std::vector<JobRecord> ended;
+  for (JobRecord job; control_.PopJob(&job);) ended.push_back(job);
+  std::vector<PublishedEvent> news;
+  for (PublishedEvent event; control_.PopEvent(&event);) news.push_back(event);
+
+  // Journal news go before the frames that show them.
+  std::vector<Published> frames;
+  for (Published published; control_.PopFrame(&published);) frames.push_back(published);
+  for (JournalNews item; control_.PopNews(&item);) TakeIn(item);
+
+  const bool fresh = !frames.empty();
+  for (const Published& published : frames) {
+    if (published.run != newest_.run) history_.Clear();
+    history_.Add(published.frame);
+    if (recorder) recorder->Add(published);
+    newest_ = published;
+  }
+  std::vector<Event> events;
+  for (const PublishedEvent& published : news) {
+    const Event& event = published.event;
+    if (published.run == newest_.run) {
+      history_.Add(event);
+      // Before anybody hears of the drop, so that its record is there when they do.
+      if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
+        RecordIncident(event);
+    }
+    if (recorder) recorder->Add(event, published.run);
+    events_.push_back(event);
+    if (events_.size() > kEventsKept) events_.pop_front();
+    events.push_back(event);
+  }
+  if (fresh) {
+    ++frame_number_;
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed = std::chrono::duration<double>(now - sample_.wall).count();
+    if (elapsed > 0.25) {
+      const bool known = sample_.wall.time_since_epoch().count() != 0 && sample_.run == newest_.run;
+      if (known) real_time_factor_ = (newest_.frame.time_s - sample_.time_s) / elapsed;
+      sample_ = {now, newest_.frame.time_s, newest_.run};
+    }
+    if (newest_.frame.job.id != 0) jobs_.Update(newest_.frame.job);
+    if (newest_.step.id != 0) jobs_.Update(newest_.step);
+  }
+  for (const JobRecord& job : ended) jobs_.Update(job);
+  return events;
+}
+
+void Service::TakeIn(const JournalNews& news) {
+  switch (news.kind) {
+    case JournalNews::Kind::kBegin:
+      journal_ = news.start->journal;
+      run_ = news.run;
+      if (recorder) recorder->Begin(journal_, run_);
+      if (!news.start->restored) break;
+      accepted.parameters = news.start->parameters;
+      accepted.noise = news.start->noise;
+      accepted.seed = news.start->seed;
+      accepted.object = std::make_shared<const ObjectModel>(journal_.config.model.object);
+      break;
+    case JournalNews::Kind::kCommand:
+      journal_.entries.push_back(news.entry);
+      if (recorder) recorder->Add(news.entry, news.run);
+      break;
+    case JournalNews::Kind::kMark:
+      if (const auto mark = marks_.extract(news.request)) mark.mapped()(news);
+      break;
+  }
+}
+
+void Service::Mark(std::function<void(const JournalNews&)> told) {
+  CheckNotRestoring();
+  marks_.emplace(Post({.kind = ControlRequest::Kind::kMark}), std::move(told));
+}
+
+void Service::RecordIncident(const Event& event) {
+  IncidentSource source;
+  source.event = event;
+  source.frames = history_.Recent();
+  source.events = history_.Events();
+  source.job = newest_.frame.job;
+  source.parameters = accepted.parameters;
+  source.object = accepted.object->name;
+  source.dt = dt();
+  const auto incident = std::make_shared<const Incident>(MakeIncident(source, hand()));
+  const auto base = config_.output_dir / IncidentName(event.tick);
+  incident_ = incident;
+  incident_summary_ = {{"tick", event.tick},
+                       {"time_s", incident->time_s},
+                       {"seed", newest_.frame.seed},
+                       {"cause", incident->cause},
+                       {"record", base.string() + ".json"},
+                       {"picture", base.string() + ".png"}};
+  if (incident->job.id != 0) job_incidents_[incident->job.id] = incident_summary_;
+  if (job_incidents_.size() > JobTable::kKept) job_incidents_.erase(job_incidents_.begin());
+  spdlog::warn("{}", incident->cause);
+  try {
+    WriteOutput(base.string() + ".json",
+                [&](const std::string& draft) { WriteIncident(*incident, hand(), draft); });
+  } catch (const std::exception& e) {
+    spdlog::error("no record of the incident: {}", e.what());
+  }
+  DrawIncidentLater(incident);
+}
+
+void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident) {
+  const auto draw = [incident, hand = hand(), directory = config_.output_dir] {
+    const auto path = directory / (IncidentName(incident->event.tick) + ".png");
+    try {
+      WriteOutput(path, [&](const std::string& draft) { DrawIncident(*incident, hand, 0, draft); });
+    } catch (const std::exception& e) {
+      spdlog::error("no picture of the incident: {}", e.what());
+    }
+  };
+  if (host_->Background(draw, [] {})) return;
+  host_->After(kRetry_s, [this, incident] { DrawIncidentLater(incident); });
+}
+
+Json Service::JobAnswer(const JobRecord& job) const {
+  Json json = JobJson(job, hand());
+  const auto incident = job_incidents_.find(job.id);
+  json["incident"] = incident == job_incidents_.end() ? Json() : incident->second;
+  return json;
+}
+
+Json Service::Topic(const std::string& topic) {
+  const Frame& frame = newest_.frame;
+  if (topic == "contacts") return ContactsJson(frame, hand());
+  if (topic == "joints") return JointsJson(frame, hand());
+  if (topic == "quality") return QualityJson(frame, hand(), accepted.parameters);
+  if (topic == "truth") return TruthJson(frame, hand());
+  return StatusJson(*this);
+}
+
+double Service::real_time_factor() const { return newest_.paused ? 0.0 : real_time_factor_; }
+
+std::vector<std::string> Service::Names(NameSource source) const {
+  std::vector<std::string> names;
+  switch (source) {
+    case NameSource::kNone:
+      break;
+    case NameSource::kFinger:
+      for (const Finger& finger : hand().fingers) names.push_back(finger.name);
+      break;
+    case NameSource::kObject:
+      names = ListObjects(config_.search_path);
+      break;
+    case NameSource::kParameter:
+      for (const ParameterInfo& info : ParameterTable()) names.emplace_back(info.name);
+      break;
+  }
+  return names;
+}
+
+void Service::CheckNotFaulted() const {
+  if (newest_.frame.state == SessionState::kFaulted)
+    throw RpcException(ErrorCode::kSimulationFault, "the simulation has stopped on a fault",
+                       "regrasp reset");
+}
+
+void Service::CheckNotRestoring() const {
+  if (const JobRecord* job = jobs_.Restoring())
+    throw RpcException(ErrorCode::kBusy,
+                       fmt::format("a checkpoint is being restored (job {})", job->id),
+                       fmt::format("regrasp job wait {}", job->id));
+}
+
+void Service::CheckAllowed(CommandType type) const {
+  if (type != CommandType::kReset) CheckNotFaulted();
+  const Verdict verdict = Check(type, newest_.frame.state, jobs_.Unfinished() != nullptr);
+  if (verdict.kind == Verdict::Kind::kAllowed) return;
+  const bool busy = verdict.kind == Verdict::Kind::kBusy;
+  std::string message = verdict.reason;
+  if (const JobRecord* job = jobs_.Unfinished(); busy && job)
+    message += fmt::format(" (job {}: {})", job->id, Name(job->method));
+  throw RpcException(busy ? ErrorCode::kBusy : ErrorCode::kBadState, std::move(message),
+                     verdict.hint);
+}
+
+std::uint64_t Service::Post(ControlRequest request) {
+  const std::uint64_t number = control_.Post(std::move(request));
+  if (number == 0)
+    throw RpcException(ErrorCode::kBusy, "the command queue is full", "try again in a moment");
+  return number;
+}
+
+std::uint64_t Service::PostCommand(Command command) {
+  CheckNotRestoring();
+  if (control_.backlog() >= kMaxBacklog)
+    throw RpcException(ErrorCode::kBusy,
+                       fmt::format("{} commands are waiting for the next tick", kMaxBacklog),
+                       accepted.paused ? "regrasp step 1" : "try again in a moment");
+  ControlRequest request;
+  request.command = std::move(command);
+  return Post(std::move(request));
+}
+
+}  // namespace regrasp

@@ -1,0 +1,181 @@
+#pragma once
+
+/// What the I/O thread knows and does, apart from sockets: it validates requests against the method
+/// table, assigns jobs, talks to the control loop and answers from the newest frame.
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/hand/scenario.h"
+#include "core/protocol/methods.h"
+#include "core/session/parameters.h"
+#include "daemon/loop/control_loop.h"
+#include "daemon/output/history.h"
+#include "daemon/output/incident.h"
+#include "daemon/output/recorder.h"
+#include "daemon/requests/jobs.h"
+#include "daemon/requests/params.h"
+#include "daemon/wire/json.h"
+#include "daemon/wire/rpc.h"
+
+namespace regrasp {
+
+/// Called once with a result, or with an error.
+using Done = std::function<void(Json result, const RpcError* error)>;
+
+/// What a handler answers. Exactly one of: `result` now; `later` once the control thread has taken
+/// request `barrier`; or whatever `begin` passes to its Done at any later time.
+struct Outcome {
+  Json result = {};
+  std::uint64_t barrier = 0;  ///< hold the answer until ControlLoop::acknowledged() reaches this
+  std::function<Json()> later = {};  ///< makes the result then; empty: `result`
+  std::function<void(Done)> begin = {};
+  bool overtaken = false;  ///< with `begin`: later requests of the connection go on meanwhile
+};
+
+/// The connection a request came from, as handlers see it.
+class Client {
+ public:
+  virtual ~Client() = default;
+  /// Returns the number of the new subscription. Throws RpcException (busy) over the limit.
+  virtual std::int64_t Subscribe(const std::string& topic, double rate_hz) = 0;
+  /// Its last {sub, seq, dropped}; null when there is none of this number.
+  virtual Json Unsubscribe(std::int64_t sub) = 0;
+};
+
+struct ServiceConfig {
+  ControlConfig control;
+  std::vector<std::filesystem::path> search_path;  ///< for `reset {object}`
+  std::filesystem::path output_dir;                ///< for pictures
+};
+
+/// Timers and threads that handlers need; the server provides them.
+class Host {
+ public:
+  virtual ~Host() = default;
+  /// Calls `action` on the I/O thread after `seconds`, unless cancelled with the key it returns.
+  virtual std::uint64_t After(double seconds, std::function<void()> action) = 0;
+  virtual void Cancel(std::uint64_t key) = 0;
+  /// Runs `work` on the worker thread, then `finish` on the I/O thread. False when too much is
+  /// waiting.
+  virtual bool Background(std::function<void()> work, std::function<void()> finish) = 0;
+  virtual std::size_t clients() const = 0;
+  virtual void Shutdown() = 0;
+  /// True when a service manager owns the socket, and starts a daemon at the next connection.
+  virtual bool activated() const = 0;
+};
+
+class Service {
+ public:
+  /// Starts the control loop. Throws what Session throws.
+  Service(ServiceConfig config, Host* host);
+
+  /// Looks the method up, checks the parameters, runs the handler. Throws RpcException.
+  Outcome Call(const std::string& method, const JsonIn& params, Client* client);
+
+  /// Takes in what the control loop has published: newest frame, history, jobs (whose waiters are
+  /// called), events. Returns the new events. Call after ControlLoop::output() was notified.
+  std::vector<Event> Drain();
+
+  /// The last drop or fault since the start; null when there was none.
+  const std::shared_ptr<const Incident>& incident() const { return incident_; }
+  /// Where its record is and what it says, for `status`; null when there was none.
+  const Json& incident_summary() const { return incident_summary_; }
+  /// The record of a job, with the incident that ended it.
+  Json JobAnswer(const JobRecord& job) const;
+
+  /// The present value of a subscription topic other than events.
+  Json Topic(const std::string& topic);
+  /// Changes whenever a new frame has come in.
+  std::uint64_t frame_number() const { return frame_number_; }
+
+  // For the handlers.
+  ControlLoop& control() { return control_; }
+  Host& host() { return *host_; }
+  JobTable& jobs() { return jobs_; }
+  const Published& newest() const { return newest_; }
+  const History& history() const { return history_; }
+  const std::deque<Event>& events() const { return events_; }
+  const HandModel& hand() const { return config_.control.session.model.hand; }
+  const ServiceConfig& config() const { return config_; }
+  double dt() const { return config_.control.session.world.dt; }
+  double real_time_factor() const;
+  double speed() const { return config_.control.speed; }
+  std::chrono::steady_clock::time_point started() const { return started_; }
+  /// The names behind a dynamic enumeration, now.
+  std::vector<std::string> Names(NameSource source) const;
+
+  /// The present run up to now: every command that was applied.
+  const Journal& journal() const { return journal_; }
+  std::uint64_t run() const { return run_; }  ///< its number
+  /// The run file that is being written, or null.
+  std::shared_ptr<Recorder> recorder;
+  /// Asks for the tick and the state hash of this moment, after every command accepted before;
+  /// `told` is called on the I/O thread when journal() is complete up to there.
+  void Mark(std::function<void(const JournalNews&)> told);
+
+  /// Values as accepted, which the simulation may not have seen yet (it has after its next tick).
+  struct Accepted {
+    Parameters parameters;
+    NoiseLevels noise;
+    std::uint64_t seed = 1;
+    std::shared_ptr<const ObjectModel> object;
+    bool paused = false;
+  } accepted;
+
+  /// Throws busy, bad state or simulation fault unless the command may be given now.
+  void CheckAllowed(CommandType type) const;
+  void CheckNotFaulted() const;
+  /// Throws busy while a checkpoint is being restored.
+  void CheckNotRestoring() const;
+  /// Queues a request; throws busy when there is no room.
+  std::uint64_t Post(ControlRequest request);
+  /// The same for a command that takes effect at a tick; refuses to let too many pile up while
+  /// paused.
+  std::uint64_t PostCommand(Command command);
+
+ private:
+  void TakeIn(const JournalNews& news);
+  /// Writes the record of what led to `event` at once and has its picture drawn.
+  void RecordIncident(const Event& event);
+  void DrawIncidentLater(std::shared_ptr<const Incident> incident);
+
+  ServiceConfig config_;
+  Host* host_;
+  ControlLoop control_;
+  JobTable jobs_;
+  Journal journal_;
+  std::uint64_t run_ = 0;
+  std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;
+  History history_;
+  std::deque<Event> events_;
+  std::shared_ptr<const Incident> incident_;
+  Json incident_summary_;
+  std::map<std::int64_t, Json> job_incidents_;  ///< summaries by job
+  Published newest_;
+  std::uint64_t frame_number_ = 0;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  struct SpeedSample {
+    std::chrono::steady_clock::time_point wall;
+    double time_s = 0;
+    std::uint64_t run = 0;
+  };
+  SpeedSample sample_;
+  double real_time_factor_ = 0;
+};
+
+using Handler = Outcome (*)(Service&, const Params&, Client&);
+
+/// The handler of a method, or null.
+Handler FindHandler(std::string_view method);
+
+/// Version of this build, "0.1.0".
+std::string_view Version();
+
+}  // namespace regrasp

@@ -1,0 +1,277 @@
+// Commands that change the simulation.
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "core/sensing/noise.h"
+#include "daemon/requests/handlers.h"
+#include "daemon/wire/frame_json.h"
+
+namespace regrasp::handlers {
+namespace {
+
+constexpr double kLeastAxis = 1e-9;  // shorter than this, an axis has no direction
+constexpr double kLeastMove = 1e-9;  // shorter than this, an offset [m] or rotation [rad] is none
+
+/// Checks, makes a job and queues the command that works on it.
+Outcome StartJob(Service& service, JobMethod method, Command command) {
+  service.CheckAllowed(command.type);
+  JobRecord& job = service.jobs().Add(method);
+  const std::int64_t id = job.id;
+  job.explore.finger = command.finger;
+  job.explore.criterion = command.criterion;
+  job.explore.estimator = command.estimator;
+  job.explore.seed = command.seed;
+  job.move.offset_m = command.offset_W;
+  job.move.rotation_rad = command.rotation_W;
+  command.job = id;
+  try {
+    const std::uint64_t barrier = service.PostCommand(std::move(command));
+    return {.result = {{"job", id}}, .barrier = barrier};
+  } catch (...) {
+    service.jobs().Withdraw(id);
+    throw;
+  }
+}
+
+Command Of(CommandType type) {
+  Command command;
+  command.type = type;
+  return command;
+}
+
+/// The word's place in `values`, which is also its value in the enumeration `E`.
+template <typename E>
+E EnumNamed(std::string_view word, std::initializer_list<E> values) {
+  for (const E value : values)
+    if (Name(value) == word) return value;
+  return *values.begin();
+}
+
+Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
+  return {.barrier = barrier, .later = [&service] {
+            return Json{{"paused", service.newest().paused}, {"tick", service.newest().frame.tick}};
+          }};
+}
+
+Json ParamEntry(Service& service, int index) {
+  return ParameterJson(ParameterTable()[static_cast<std::size_t>(index)],
+                       service.accepted.parameters);
+}
+
+}  // namespace
+
+Outcome Grasp(Service& service, const Params&, Client&) {
+  return StartJob(service, JobMethod::kGrasp, Of(CommandType::kGrasp));
+}
+
+Outcome Release(Service& service, const Params&, Client&) {
+  return StartJob(service, JobMethod::kRelease, Of(CommandType::kRelease));
+}
+
+Outcome Explore(Service& service, const Params& params, Client&) {
+  Command command = Of(CommandType::kExplore);
+  command.finger = service.hand().FindFinger(params.String("finger"));
+  command.criterion = EnumNamed(params.String("criterion", "manipulability"),
+                                {Criterion::kManipulability, Criterion::kStability,
+                                 Criterion::kSwitched, Criterion::kCombined});
+  command.estimator = EnumNamed(params.String("estimator", "least_squares"),
+                                {Estimator::kLeastSquares, Estimator::kSecant});
+  command.seed = static_cast<std::uint64_t>(
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+  command.max_cycles = static_cast<int>(params.Integer("max_cycles", 0));
+  return StartJob(service, JobMethod::kExplore, std::move(command));
+}
+
+Outcome Rotate(Service& service, const Params& params, Client&) {
+  const bool continuous = params.Bool("continuous", false);
+  const int given = params.Has("angle_rad") + params.Has("turns") + continuous;
+  if (given != 1)
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams,
+                 fmt::format("rotate takes one of angle_rad, turns and continuous, not {}", given),
+                 "regrasp rotate --angle 90 --wait",
+                 "angle_rad",
+                 {}});
+  Command command = Of(CommandType::kRotate);
+  command.continuous = continuous;
+  command.angle_rad = params.Number("angle_rad", 2 * std::numbers::pi * params.Number("turns", 0));
+  if (!continuous && command.angle_rad == 0)
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "an angle of 0 leaves nothing to turn",
+                                "regrasp rotate --angle 90 --wait",
+                                params.Has("turns") ? "turns" : "angle_rad",
+                                {}});
+  command.axis_W = params.Vector("axis", command.axis_W);
+  const double length = command.axis_W.norm();
+  if (length < kLeastAxis)
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "the axis has no direction: its length is 0",
+                                "regrasp rotate --angle 90 --axis 0,0,1",
+                                "axis",
+                                {}});
+  command.axis_W /= length;
+  command.speed_rad_s = params.Number("speed_rad_s", 0);
+  return StartJob(service, JobMethod::kRotate, std::move(command));
+}
+
+Outcome Move(Service& service, const Params& params, Client&) {
+  Command command = Of(CommandType::kMove);
+  command.offset_W = params.Vector("offset_m");
+  command.rotation_W = params.Vector("rotation_rad");
+  for (Vector3d* vector : {&command.offset_W, &command.rotation_W})
+    if (vector->norm() < kLeastMove) vector->setZero();
+  if (command.offset_W.isZero(0) && command.rotation_W.isZero(0))
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "an offset and a rotation of 0 leave nothing to move",
+                                "regrasp move --by 0,0,5 --wait",
+                                "offset_m",
+                                {}});
+  const auto check = [](const char* name, double length, double most, const char* unit) {
+    // What is written in decimals may be longer by its rounding.
+    if (length <= most * (1 + 1e-9)) return;
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams,
+                 fmt::format("{} of length {:.6g} {} is too long", name, length, unit),
+                 fmt::format("allowed: at most {:.6g} {}", most, unit),
+                 name,
+                 {}});
+  };
+  check("offset_m", command.offset_W.norm(), kMaxMoveOffset, "m");
+  check("rotation_rad", command.rotation_W.norm(), std::numbers::pi, "rad");
+  return StartJob(service, JobMethod::kMove, std::move(command));
+}
+
+Outcome Stop(Service& service, const Params&, Client&) {
+  service.CheckAllowed(CommandType::kStop);
+  const JobRecord* job = service.jobs().Unfinished();
+  const Json id = job ? Json(job->id) : Json();
+  return {.result = {{"job", id}}, .barrier = service.PostCommand(Of(CommandType::kStop))};
+}
+
+Outcome Pause(Service& service, const Params&, Client&) {
+  const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kPause});
+  service.accepted.paused = true;
+  return ClockAnswer(service, barrier);
+}
+
+Outcome Resume(Service& service, const Params&, Client&) {
+  service.CheckNotFaulted();
+  const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kResume});
+  service.accepted.paused = false;
+  return ClockAnswer(service, barrier);
+}
+
+Outcome Step(Service& service, const Params& params, Client&) {
+  service.CheckNotRestoring();
+  service.CheckNotFaulted();
+  if (!service.accepted.paused)
+    throw RpcException(ErrorCode::kBadState, "the simulation is not paused", "regrasp pause");
+  if (const JobRecord* step = service.jobs().UnfinishedStep())
+    throw RpcException(ErrorCode::kBusy, fmt::format("another step is running (job {})", step->id),
+                       fmt::format("regrasp job wait {}", step->id));
+  const std::int64_t id = service.jobs().Add(JobMethod::kStep).id;
+  try {
+    const std::uint64_t barrier = service.Post(
+        {.kind = ControlRequest::Kind::kStep, .job = id, .ticks = params.Integer("ticks", 1)});
+    return {.result = {{"job", id}}, .barrier = barrier};
+  } catch (...) {
+    service.jobs().Withdraw(id);
+    throw;
+  }
+}
+
+Outcome Reset(Service& service, const Params& params, Client&) {
+  service.CheckNotRestoring();
+  Command command = Of(CommandType::kReset);
+  command.seed = static_cast<std::uint64_t>(
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+  if (params.Has("object")) {
+    try {
+      command.object = std::make_shared<const ObjectModel>(
+          LoadObject(params.String("object"), service.config().search_path));
+    } catch (const ModelError& e) {
+      throw RpcException(RpcError{ErrorCode::kIo, e.what(), "correct the model", "object", {}});
+    }
+  }
+  ControlRequest request;
+  request.command = command;
+  const std::uint64_t barrier = service.Post(std::move(request));
+  Service::Accepted& accepted = service.accepted;
+  accepted.seed = command.seed;
+  accepted.parameters = ParametersAfterReset(accepted.parameters, command.object.get());
+  if (command.object) accepted.object = command.object;
+  return {.result = {{"seed", accepted.seed}, {"object", accepted.object->name}},
+          .barrier = barrier};
+}
+
+Outcome Push(Service& service, const Params& params, Client&) {
+  service.CheckAllowed(CommandType::kPush);
+  Command command = Of(CommandType::kPush);
+  command.force_W = params.Vector("force_n");
+  command.duration_s = params.Number("duration_s", 0.1);
+  const Vector3d& f = command.force_W;
+  Json result = {{"force_n", {f.x(), f.y(), f.z()}}, {"duration_s", command.duration_s}};
+  return {.result = std::move(result), .barrier = service.PostCommand(std::move(command))};
+}
+
+Outcome NoiseGet(Service& service, const Params&, Client&) {
+  return {.result = NoiseJson(service.accepted.noise)};
+}
+
+Outcome NoiseSet(Service& service, const Params& params, Client&) {
+  service.CheckAllowed(CommandType::kNoise);
+  NoiseLevels levels = service.accepted.noise;
+  if (params.Has("preset")) levels = *NoisePreset(params.String("preset"));
+  levels.position_m = params.Number("position_m", levels.position_m);
+  levels.normal_rad = params.Number("normal_rad", levels.normal_rad);
+  levels.force_n = params.Number("force_n", levels.force_n);
+  levels.joint_rad = params.Number("joint_rad", levels.joint_rad);
+  levels.object_position_m = params.Number("object_position_m", levels.object_position_m);
+  levels.object_rotation_rad = params.Number("object_rotation_rad", levels.object_rotation_rad);
+  Command command = Of(CommandType::kNoise);
+  command.noise = levels;
+  const std::uint64_t barrier = service.PostCommand(std::move(command));
+  service.accepted.noise = levels;
+  return {.result = NoiseJson(levels), .barrier = barrier};
+}
+
+Outcome ParamGet(Service& service, const Params& params, Client&) {
+  if (params.Has("name"))
+    return {.result = ParamEntry(service, FindParameter(params.String("name")))};
+  Json list = Json::array();
+  for (const ParameterInfo& info : ParameterTable())
+    list.push_back(ParameterJson(info, service.accepted.parameters));
+  return {.result = {{"parameters", std::move(list)}}};
+}
+
+Outcome ParamSet(Service& service, const Params& params, Client&) {
+  service.CheckAllowed(CommandType::kParameter);
+  const int index = FindParameter(params.String("name"));
+  const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(index)];
+  const auto refuse = [&](std::string message) {
+    throw RpcException(RpcError{
+        ErrorCode::kInvalidParams,
+        std::move(message),
+        fmt::format("allowed: {}{} ... {}{}", info.size == 1 ? "" : "3 numbers, each ", info.min,
+                    info.max, info.unit.empty() ? "" : fmt::format(" {}", info.unit)),
+        "value",
+        {}});
+  };
+  const int given = params.Size("value");
+  if (given != info.size)
+    refuse(fmt::format("{} takes {} number{}, not {}", info.name, info.size,
+                       info.size == 1 ? "" : "s", given));
+  Command command = Of(CommandType::kParameter);
+  command.parameter = index;
+  command.value = params.Vector("value");
+  for (int i = 0; i < info.size; ++i)
+    if (command.value[i] < info.min || command.value[i] > info.max)
+      refuse(fmt::format("{} = {} is out of range", info.name, command.value[i]));
+  const std::uint64_t barrier = service.PostCommand(command);
+  SetParameter(&service.accepted.parameters, command);
+  return {.result = ParamEntry(service, index), .barrier = barrier};
+}
+
+}  // namespace regrasp::handlers

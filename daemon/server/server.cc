@@ -1,0 +1,249 @@
+#include "daemon/server/server.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <asio/buffer.hpp>
+#include <asio/post.hpp>
+#include <csignal>
+#include <system_error>
+
+#include "daemon/wire/rpc.h"
+
+namespace regrasp {
+namespace {
+
+constexpr std::size_t kMaxBackground = 8;
+
+void RefuseClient(Connection::Socket socket, const RpcError& error) {
+  const std::string line = ToLine(ErrorMessage({}, error));
+  std::error_code ignored;
+  socket.non_blocking(true, ignored);
+  socket.write_some(asio::buffer(line), ignored);  // a fresh socket has room for one line
+}
+
+}  // namespace
+
+Server::Server(ServiceConfig config, Limits limits, ListenSocket* listener)
+    : limits_(limits), listener_(listener), service_(std::move(config), this) {
+  const int output = ::dup(service_.control().output().fd());
+  if (output < 0) throw std::system_error(errno, std::generic_category(), "dup");
+  control_output_.assign(output);
+  acceptor_.assign(asio::local::stream_protocol(), listener_->Release());
+  acceptor_.non_blocking(true);
+}
+
+Server::~Server() {
+  worker_.stop();
+  worker_.join();
+}
+
+void Server::Run(bool signals, std::function<void()> reload) {
+  if (signals) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) signals_.add(signal);
+    WatchSignals(reload);
+  }
+  WatchControl();
+  WatchHealth();
+  Accept();
+  manager_.Tell("READY=1\nSTATUS=" + StatusLine());
+  FeedWatchdog();
+  io_.run();
+  // Connections hold their own sockets and timers alive through handlers: let go of all before io_
+  // goes.
+  for (const auto& connection : Connections()) connection->CloseWhenFlushed();
+  connections_.clear();
+}
+
+void Server::Stop() {
+  asio::post(io_, [this] { Shutdown(); });
+}
+
+void Server::WatchSignals(const std::function<void()>& reload) {
+  const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
+  signals_.async_wait([this, reload, on_terminal](std::error_code error, int signal) {
+    if (error) return;
+    const bool hung_up = on_terminal && ::isatty(STDERR_FILENO) == 0;
+    if (signal != SIGHUP || hung_up) {
+      spdlog::info("signal {}: stopping", signal);
+      return Shutdown();
+    }
+    manager_.Tell("RELOADING=1");
+    if (reload) reload();
+    manager_.Tell("READY=1");
+    WatchSignals(reload);
+  });
+}
+
+/// The watchdog is fed only when the control loop has moved since the last time: by a tick, or,
+/// while the clock is stopped on purpose, by looking around.
+void Server::FeedWatchdog() {
+  if (!manager_.watchdog()) return;
+  ControlLoop& control = service_.control();
+  if (const std::uint64_t pulse = control.pulse(); pulse != pulse_) {
+    pulse_ = pulse;
+    manager_.Tell("WATCHDOG=1\nSTATUS=" + StatusLine());
+  } else {
+    manager_.Tell("STATUS=the simulation does not advance: " + StatusLine());
+  }
+  control.Nudge();
+  watchdog_.expires_after(*manager_.watchdog() / 4);
+  watchdog_.async_wait([this](std::error_code error) {
+    if (!error && !stopping_) FeedWatchdog();
+  });
+}
+
+std::string Server::StatusLine() const {
+  const Published& newest = service_.newest();
+  return fmt::format("{}{}, tick {}, {:.2f} x real time", Name(newest.frame.state),
+                     newest.paused ? ", paused" : "", newest.frame.tick,
+                     service_.real_time_factor());
+}
+
+std::string Server::Request(const std::string& method, const JsonIn& params) {
+  struct Nobody final : Client {
+    std::int64_t Subscribe(const std::string&, double) override { return 0; }
+    Json Unsubscribe(std::int64_t) override { return {}; }
+  } nobody;
+  try {
+    service_.Call(method, params, &nobody);
+    return {};
+  } catch (const RpcException& e) {
+    return e.what();
+  }
+}
+
+void Server::Accept() {
+  acceptor_.async_accept([this](std::error_code error, Connection::Socket socket) {
+    if (stopping_) return;
+    if (!error) {
+      Admit(std::move(socket));
+      return Accept();
+    }
+    // Out of descriptors, most likely: try again when some may have been closed.
+    spdlog::warn("cannot accept a client: {}", error.message());
+    accept_retry_.expires_after(std::chrono::milliseconds(100));
+    accept_retry_.async_wait([this](std::error_code cancelled) {
+      if (!cancelled && !stopping_) Accept();
+    });
+  });
+}
+
+void Server::Admit(Connection::Socket socket) {
+  if (!PeerAllowed(socket.native_handle())) {
+    spdlog::warn("a client of another user was refused");
+    return RefuseClient(std::move(socket), {ErrorCode::kPermission,
+                                            "this daemon belongs to another user",
+                                            "start your own: regrasp up",
+                                            {},
+                                            {}});
+  }
+  if (connections_.size() >= limits_.max_clients)
+    return RefuseClient(std::move(socket),
+                        {ErrorCode::kTooManyClients,
+                         fmt::format("{} clients are connected already", connections_.size()),
+                         "close one, or start regraspd with a larger --max-clients",
+                         {},
+                         {}});
+  const auto connection = std::make_shared<Connection>(std::move(socket), this);
+  connections_.emplace(connection.get(), connection);
+  connection->Start();
+}
+
+void Server::Closed(Connection* connection, const std::string& why) {
+  if (why.starts_with("evicted")) spdlog::warn("client {}", why);
+  // The caller may be iterating over, or running inside, this connection.
+  asio::post(io_, [this, connection] {
+    connections_.erase(connection);
+    if (stopping_ && connections_.empty()) Finish();
+  });
+}
+
+std::vector<std::shared_ptr<Connection>> Server::Connections() const {
+  std::vector<std::shared_ptr<Connection>> all;
+  all.reserve(connections_.size());
+  for (const auto& [key, connection] : connections_) all.push_back(connection);
+  return all;
+}
+
+void Server::WatchControl() {
+  control_output_.async_wait(asio::posix::stream_descriptor::wait_read,
+                             [this](std::error_code error) {
+                               if (error) return;
+                               ControlLoop& control = service_.control();
+                               control.output().Clear();
+                               // In this order: what is acknowledged is shown by the frames taken
+                               // in after it.
+                               const std::uint64_t acknowledged = control.acknowledged();
+                               const std::vector<Event> events = service_.Drain();
+                               acknowledged_ = acknowledged;
+                               const auto connections = Connections();
+                               for (const auto& connection : connections)
+                                 connection->OnAcknowledged();
+                               for (const Event& event : events)
+                                 for (const auto& connection : connections)
+                                   connection->OnEvent(event);
+                               WatchControl();
+                             });
+}
+
+void Server::WatchHealth() {
+  health_.expires_after(
+      std::min<std::chrono::milliseconds>(std::chrono::seconds(1), limits_.max_stall / 4));
+  health_.async_wait([this](std::error_code error) {
+    if (error) return;
+    const auto now = std::chrono::steady_clock::now();
+    for (const auto& connection : Connections()) connection->CheckHealth(now);
+    WatchHealth();
+  });
+}
+
+std::uint64_t Server::After(double seconds, std::function<void()> action) {
+  const std::uint64_t key = ++last_timer_;
+  asio::steady_timer& timer = timers_.emplace(key, asio::steady_timer(io_)).first->second;
+  timer.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds)));
+  timer.async_wait([this, key, action = std::move(action)](std::error_code error) {
+    // Cancelled after it had expired: the handler was already queued and comes without an error.
+    if (error || timers_.erase(key) == 0) return;
+    action();
+  });
+  return key;
+}
+
+void Server::Cancel(std::uint64_t key) { timers_.erase(key); }
+
+bool Server::Background(std::function<void()> work, std::function<void()> finish) {
+  if (background_ >= kMaxBackground) return false;
+  ++background_;
+  asio::post(worker_, [this, work = std::move(work), finish = std::move(finish)] {
+    work();
+    asio::post(io_, [this, finish] {
+      --background_;
+      finish();
+    });
+  });
+  return true;
+}
+
+void Server::Shutdown() {
+  if (stopping_) return;
+  stopping_ = true;
+  manager_.Tell("STOPPING=1");
+  // After the handler that asked has sent its answer.
+  asio::post(io_, [this] {
+    std::error_code ignored;
+    acceptor_.close(ignored);
+    listener_->Remove();
+    for (const auto& connection : Connections()) connection->CloseWhenFlushed();
+    last_moment_.expires_after(std::chrono::seconds(1));
+    last_moment_.async_wait([this](std::error_code) { Finish(); });
+    if (connections_.empty()) Finish();
+  });
+}
+
+void Server::Finish() { io_.stop(); }
+
+}  // namespace regrasp

@@ -1,0 +1,276 @@
+#include "daemon/wire/frame_json.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "core/gait/finger_gait.h"
+#include "core/quality/epsilon.h"
+#include "core/sensing/noise.h"
+#include "daemon/output/incident.h"
+
+namespace regrasp {
+namespace {
+
+Json Vector(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Json Wxyz(const Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+Json FingerName(const HandModel& hand, int finger) {
+  if (finger < 0 || finger >= hand.num_fingers()) return nullptr;
+  return hand.fingers[static_cast<std::size_t>(finger)].name;
+}
+
+Json Tick(std::int64_t tick) { return tick < 0 ? Json() : Json(tick); }
+
+/// The measure that exploration maximises now, or would: the rule of `switched` (Sec. II).
+std::string_view ActiveCriterion(const Frame& frame) {
+  const ExplorationFrame& exploration = frame.exploration;
+  if (exploration.active && exploration.criterion != Criterion::kSwitched)
+    return Name(exploration.criterion);
+  const bool on_stability = exploration.active ? exploration.on_stability
+                                               : frame.stability.active < frame.stability.threshold;
+  return Name(on_stability ? Criterion::kStability : Criterion::kManipulability);
+}
+
+constexpr int kVolumeEdges = 8;  // of the friction pyramid, as for epsilon
+
+/// Volume of the grasp wrench space of the sensed contacts, torques divided by their mean distance
+/// from the object's centre. Takes about a millisecond: too slow for the simulation, so it is made
+/// here.
+double HullVolume(const Frame& frame, const Parameters& parameters) {
+  std::vector<GraspContact> contacts;
+  double scale = 0;
+  for (const FingerFrame& f : frame.fingers) {
+    if (f.role == FingerRole::kFree || !f.in_contact) continue;
+    contacts.push_back(
+        {f.p_WC - frame.p_WO_sensed, -f.normal_W, parameters.control.friction_estimate});
+    scale += contacts.back().position.norm();
+  }
+  if (contacts.empty()) return 0;
+  return WrenchHullVolume(contacts, scale / static_cast<double>(contacts.size()), kVolumeEdges);
+}
+
+std::string_view MeasureName(const Parameters& parameters) {
+  switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.control.stability_measure))) {
+    case StabilityMeasure::kMinSingularValue:
+      return "min_singular_value";
+    case StabilityMeasure::kEpsilon:
+      return "epsilon";
+    case StabilityMeasure::kSqrtDet:
+      return "sqrt_det";
+    case StabilityMeasure::kIsotropy:
+      return "isotropy";
+  }
+  return "";
+}
+
+}  // namespace
+
+Json ContactsJson(const Frame& frame, const HandModel& hand) {
+  Json fingers = Json::object();
+  for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
+    const FingerFrame& f = frame.fingers[i];
+    fingers[hand.fingers[i].name] = {{"role", Name(f.role)},
+                                     {"in_contact", f.in_contact},
+                                     {"p_WC_m", f.in_contact ? Vector(f.p_WC) : Json()},
+                                     {"normal_W", f.in_contact ? Vector(f.normal_W) : Json()},
+                                     {"force_n", f.force},
+                                     {"force_command_W_n", Vector(f.f_command_W)}};
+  }
+  return {{"tick", frame.tick},
+          {"time_s", frame.time_s},
+          {"object",
+           {{"p_WO_m", Vector(frame.p_WO_sensed)},
+            {"q_WO_wxyz", Wxyz(frame.q_WO_sensed)},
+            {"p_WO_reference_m", Vector(frame.p_WO_reference)}}},
+          {"fingers", std::move(fingers)}};
+}
+
+Json JointsJson(const Frame& frame, const HandModel& hand) {
+  std::vector<int> owner(hand.joints.size(), -1);
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    for (const int j : hand.fingers[static_cast<std::size_t>(f)].joints)
+      owner[static_cast<std::size_t>(j)] = f;
+  Json joints = Json::array();
+  for (Eigen::Index i = 0; i < frame.q_sensed.size(); ++i) {
+    const Joint& joint = hand.joints[static_cast<std::size_t>(i)];
+    joints.push_back({{"name", joint.name},
+                      {"finger", FingerName(hand, owner[static_cast<std::size_t>(i)])},
+                      {"angle_rad", frame.q_sensed[i]},
+                      {"torque_nm", frame.torque[i]},
+                      {"lower_rad", joint.lower},
+                      {"upper_rad", joint.upper}});
+  }
+  return {{"tick", frame.tick}, {"time_s", frame.time_s}, {"joints", std::move(joints)}};
+}
+
+Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters) {
+  const StabilityFrame& s = frame.stability;
+  Json fingers = Json::object();
+  for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
+    const FingerFrame& f = frame.fingers[i];
+    fingers[hand.fingers[i].name] = {{"manipulability", f.manipulability},
+                                     {"load_margin_without_n", f.load_margin_without},
+                                     {"joint_limit_margin_rad", f.joint_limit_margin}};
+  }
+  Json exploration;
+  if (const ExplorationFrame& e = frame.exploration; e.active)
+    exploration = {{"finger", FingerName(hand, e.finger)},
+                   {"criterion", Name(e.criterion)},
+                   {"cycle", e.cycle},
+                   {"phi", e.phi},
+                   {"gradient_norm_1_m", e.gradient_norm},
+                   {"gradient_threshold_1_m", e.epsilon}};
+  return {{"tick", frame.tick},
+          {"time_s", frame.time_s},
+          {"criterion", ActiveCriterion(frame)},
+          {"stability", s.active},
+          {"stability_measure", MeasureName(parameters)},
+          {"threshold", s.threshold},
+          {"load_margin_n", s.load_margin},
+          {"min_singular_value", s.min_singular_value},
+          {"epsilon", s.epsilon},
+          {"sqrt_det", s.sqrt_det},
+          {"isotropy", s.isotropy},
+          {"volume", HullVolume(frame, parameters)},
+          {"exploration", std::move(exploration)},
+          {"fingers", std::move(fingers)}};
+}
+
+Json TruthJson(const Frame& frame, const HandModel& hand) {
+  Json contacts = Json::array();
+  for (const Frame::Contact& c : frame.contacts)
+    contacts.push_back(
+        {{"link", c.link < 0 ? Json() : Json(hand.links[static_cast<std::size_t>(c.link)].name)},
+         {"finger", FingerName(hand, c.finger)},
+         {"p_WC_m", Vector(c.p_WC)},
+         {"normal_W", Vector(c.normal_W)},
+         {"force_W_n", Vector(c.force_W)},
+         {"depth_m", c.depth}});
+  Json fingers = Json::object();
+  for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
+    const FingerFrame& f = frame.fingers[i];
+    fingers[hand.fingers[i].name] = {{"in_contact", f.true_contact},
+                                     {"manipulability", f.true_manipulability},
+                                     {"p_WF_m", Vector(f.true_tip_W)}};
+  }
+  return {{"tick", frame.tick},
+          {"time_s", frame.time_s},
+          {"object",
+           {{"p_WO_m", Vector(frame.p_WO)},
+            {"q_WO_wxyz", Wxyz(frame.q_WO)},
+            {"v_m_s", Vector(frame.v_WO)},
+            {"w_rad_s", Vector(frame.w_WO)},
+            {"mass_kg", frame.mass_kg},
+            {"friction", frame.friction}}},
+          {"contacts", std::move(contacts)},
+          {"fingers", std::move(fingers)},
+          {"gravity_W_m_s2", Vector(frame.gravity_W)},
+          {"stand_in", frame.stand_in}};
+}
+
+Json GaitJson(const GaitFrame& gait, const HandModel& hand) {
+  return {{"active", gait.active},
+          {"phase", gait.active ? Json(Name(static_cast<GaitPhase>(gait.phase))) : Json()},
+          {"finger", FingerName(hand, gait.finger)},
+          {"target_angle_rad", gait.target_angle_rad},
+          {"achieved_angle_rad", gait.achieved_angle_rad},
+          {"cycles", gait.cycles},
+          {"regrasps", gait.regrasps}};
+}
+
+Json EventJson(const Event& event, const HandModel& hand, double dt) {
+  Json json = {{"tick", event.tick},
+               {"t_s", static_cast<double>(event.tick) * dt},
+               {"kind", Name(event.kind)},
+               {"finger", FingerName(hand, event.finger)},
+               {"value", event.value}};
+  if (event.kind == EventKind::kState)
+    json["state"] = Name(static_cast<SessionState>(static_cast<int>(event.value)));
+  if (event.kind == EventKind::kJobStarted || event.kind == EventKind::kJobFinished)
+    json["job"] = static_cast<std::int64_t>(event.value);
+  if (event.kind == EventKind::kRegrasp && event.from > 0) json["from"] = event.from;
+  json["text"] = event.text;
+  if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
+    json["incident"] = IncidentName(event.tick) + ".json";
+  return json;
+}
+
+Json NoiseJson(const NoiseLevels& n) {
+  return {{"preset", NoiseName(n)},
+          {"position_m", n.position_m},
+          {"normal_rad", n.normal_rad},
+          {"force_n", n.force_n},
+          {"joint_rad", n.joint_rad},
+          {"object_position_m", n.object_position_m},
+          {"object_rotation_rad", n.object_rotation_rad},
+          {"taxel_pitch_m", n.taxel_pitch_m},
+          {"object_rate_hz", n.object_rate_hz},
+          {"object_delay_frames", n.object_delay_frames}};
+}
+
+Json JobJson(const JobRecord& job, const HandModel& hand) {
+  const bool ended = job.state != JobState::kQueued && job.state != JobState::kRunning;
+  Json json = {{"id", job.id},
+               {"method", Name(job.method)},
+               {"state", Name(job.state)},
+               {"error", job.error[0] ? Json(job.error) : Json()},
+               {"progress", job.progress},
+               {"start_tick", Tick(job.start_tick)},
+               {"end_tick", Tick(job.end_tick)}};
+  if (job.method == JobMethod::kExplore) {
+    const ExploreResult& e = job.explore;
+    json["finger"] = FingerName(hand, e.finger);
+    json["criterion"] = Name(e.criterion);
+    json["estimator"] = Name(e.estimator);
+    json["seed"] = e.seed;
+    json["converged"] = e.converged;
+    json["reason"] = e.reason == ExploreReason::kNone ? Json() : Json(Name(e.reason));
+    json["cycles"] = e.cycles;
+    json["phi_initial"] = e.phi_initial;
+    json["phi_final"] = e.phi_final;
+    json["phi_true_initial"] = e.phi_true_initial;
+    json["phi_true_final"] = e.phi_true_final;
+    json["path_length_m"] = e.path_length_m;
+  }
+  if (job.method == JobMethod::kRotate) {
+    const RotateResult& r = job.rotate;
+    json["angle_rad"] = r.angle_rad;
+    json["turns"] = r.turns;
+    json["gait_cycles"] = r.gait_cycles;
+    json["regrasps"] = r.regrasps;
+    json["dropped"] = r.dropped;
+    json["max_position_error_m"] = r.max_position_error_m;
+    json["max_tilt_rad"] = r.max_tilt_rad;
+    json["sim_time_s"] = r.sim_time_s;
+  }
+  if (job.method == JobMethod::kMove) {
+    const MoveResult& m = job.move;
+    json["offset_m"] = Vector(m.offset_m);
+    json["rotation_rad"] = Vector(m.rotation_rad);
+    json["achieved_offset_m"] = Vector(m.achieved_offset_m);
+    json["achieved_rotation_rad"] = Vector(m.achieved_rotation_rad);
+    json["reached"] = m.reached;
+    json["end"] = m.end == MoveEnd::kNone ? Json() : Json(Name(m.end));
+    json["end_finger"] = FingerName(hand, m.end_finger);
+    json["max_position_error_m"] = m.max_position_error_m;
+    json["max_rotation_error_rad"] = m.max_rotation_error_rad;
+    json["sim_time_s"] = m.sim_time_s;
+  }
+  json["finished"] = ended;
+  return json;
+}
+
+Json ParameterJson(const ParameterInfo& info, Parameters& parameters) {
+  const double* value = info.access(parameters);
+  return {{"name", info.name},
+          {"value", info.size == 1 ? Json(value[0]) : Json{value[0], value[1], value[2]}},
+          {"unit", info.unit},
+          {"min", info.min},
+          {"max", info.max},
+          {"size", info.size},
+          {"description", info.description},
+          {"source", info.source}};
+}
+
+}  // namespace regrasp

@@ -1,0 +1,32 @@
+#pragma once
+
+/// Frames, events and job records as clients see them: names instead of indices, units in the
+/// names.
+
+#include "core/hand/hand_model.h"
+#include "core/session/frame.h"
+#include "core/session/parameters.h"
+#include "daemon/wire/json.h"
+
+namespace regrasp {
+
+/// What the controller senses at each fingertip.
+Json ContactsJson(const Frame& frame, const HandModel& hand);
+/// Joints: sensed angles, applied torques, limits.
+Json JointsJson(const Frame& frame, const HandModel& hand);
+/// Quality measures; `parameters` tells which stability measure is selected.
+Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters);
+/// What only the simulator knows.
+Json TruthJson(const Frame& frame, const HandModel& hand);
+/// Where the finger gait is, while rotating; `active` false otherwise.
+Json GaitJson(const GaitFrame& gait, const HandModel& hand);
+/// One event; `dt` [s] turns its tick into a time.
+Json EventJson(const Event& event, const HandModel& hand, double dt);
+/// Preset name and every level.
+Json NoiseJson(const NoiseLevels& levels);
+/// One job record, with the fields of its method at the top level.
+Json JobJson(const JobRecord& job, const HandModel& hand);
+/// One row of the parameter table with its value.
+Json ParameterJson(const ParameterInfo& info, Parameters& parameters);
+
+}  // namespace regrasp
