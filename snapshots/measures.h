@@ -43,10 +43,7 @@ inline double SensedManipulability(const Frame& frame, int finger) {
 
 /// Whether the fingers hold the object by themselves, so that the measures of a grasp mean
 /// something.
-inline bool Holds(const Frame& frame) {
-  return frame.state == SessionState::kHolding || frame.state == SessionState::kExploring ||
-         frame.state == SessionState::kRotating || frame.state == SessionState::kMoving;
-}
+inline bool Holds(const Frame& frame) { return HoldsAlone(frame.state, frame.stand_in); }
 
 /// The finger that explores, -1 for none.
 inline int ExploringFinger(const Frame& frame) {

@@ -76,6 +76,8 @@ inline Colour StateColour(SessionState state) {
       return Tint(kVermillion, 0.45);
     case SessionState::kFaulted:
       return Tint(kInk, 0.35);
+    case SessionState::kReleasing:
+      return {225, 225, 225};
   }
   return kWhite;
 }

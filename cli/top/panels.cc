@@ -142,9 +142,7 @@ void DrawObject(Screen* screen, const Box& box, const DashboardModel& model) {
     achieved = "not turning";
   }
   std::string error;
-  const std::string state = Plain(At(model.status(), "state"));
-  const bool held =
-      state == "holding" || state == "exploring" || state == "rotating" || state == "moving";
+  const bool held = At(model.status(), "holds_alone") == true;
   const Json &is = At(object, "p_WO_m"), &wanted = At(object, "p_WO_reference_m");
   double distance = 0;
   if (held && is.is_array() && wanted.is_array() && is.size() == 3 && wanted.size() == 3) {

@@ -88,7 +88,6 @@ void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter
       a("seed", c.seed);
       break;
     case CommandType::kStop:
-    case CommandType::kReset:
       break;
   }
 }

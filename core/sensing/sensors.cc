@@ -24,7 +24,17 @@ std::int64_t PeriodIndex(std::int64_t tick, double dt, double rate_hz) {
   return static_cast<std::int64_t>(std::floor(static_cast<double>(tick) * dt * rate_hz + 1e-6));
 }
 
-/// Force-weighted mean of a finger's contacts.
+/// `n` turned by the rotation vector a t1 + b t2 in its tangent plane; exactly `n` for a = b = 0.
+Vector3d Tilted(const Vector3d& n, double a, double b) {
+  const double angle = std::hypot(a, b);
+  if (angle == 0) return n;
+  const Matrix3d R = RotationFromZ(n);
+  const Vector3d direction = (b * R.col(0) - a * R.col(1)) / angle;
+  return (std::cos(angle) * n + std::sin(angle) * direction).normalized();
+}
+
+}  // namespace
+
 FingertipReading TrueFingertip(const WorldState& truth, int finger) {
   FingertipReading mean;
   Vector3d p = Vector3d::Zero(), n = Vector3d::Zero(), f = Vector3d::Zero();
@@ -51,17 +61,6 @@ FingertipReading TrueFingertip(const WorldState& truth, int finger) {
   mean.in_contact = mean.force > kContactForce;
   return mean;
 }
-
-/// `n` turned by the rotation vector a t1 + b t2 in its tangent plane; exactly `n` for a = b = 0.
-Vector3d Tilted(const Vector3d& n, double a, double b) {
-  const double angle = std::hypot(a, b);
-  if (angle == 0) return n;
-  const Matrix3d R = RotationFromZ(n);
-  const Vector3d direction = (b * R.col(0) - a * R.col(1)) / angle;
-  return (std::cos(angle) * n + std::sin(angle) * direction).normalized();
-}
-
-}  // namespace
 
 Sensors::Sensors(const HandModel& hand, double dt, std::uint64_t seed) : hand_(&hand), dt_(dt) {
   Reseed(seed);

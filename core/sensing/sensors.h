@@ -25,6 +25,10 @@ inline constexpr double kSensorRateHz = 1000;
 /// Largest NoiseLevels::object_delay_frames; more is treated as this.
 inline constexpr int kMaxPoseDelay = 7;
 
+/// What a noise-free fingertip feels: the force-weighted mean of the finger's contacts that press
+/// on the object. In contact when that is more than 0.01 N along the normal.
+FingertipReading TrueFingertip(const WorldState& truth, int finger);
+
 class Sensors {
  public:
   /// `hand` must outlive the sensors. `dt`: tick [s].
@@ -36,9 +40,8 @@ class Sensors {
   /// The noise of later samples follows `seed`; levels, delay line and held reading stay.
   void Reseed(std::uint64_t seed);
 
-  /// One reading per tick; `tick` never decreases. A fingertip is in contact when its tip link
-  /// presses on the object with more than 0.01 N along the normal; with several contacts, the
-  /// force-weighted mean is reported. Every stream advances by the same number of draws each
+  /// One reading per tick; `tick` never decreases. A fingertip feels TrueFingertip() and its noise.
+  /// Every stream advances by the same number of draws each
   /// sample, whatever touches.
   ///
   /// With taxels (taxel_pitch_m > 0) the contact position, after its noise, snaps to the nearest

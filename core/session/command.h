@@ -4,13 +4,10 @@
 /// after validation, applied by the session at a tick boundary.
 
 #include <cstdint>
-#include <memory>
-#include <string>
 
 #include "core/common/frames.h"
 #include "core/exploration/gradient_estimator.h"
 #include "core/exploration/objective.h"
-#include "core/hand/object_model.h"
 #include "core/sensing/noise.h"
 
 namespace regrasp {
@@ -26,7 +23,6 @@ enum class CommandType : std::uint8_t {
   kPush,
   kParameter,
   kCancelJob,
-  kReset,
   kBranch,
 };
 
@@ -38,11 +34,11 @@ struct Command {
   int finger = -1;  ///< explore
   Criterion criterion = Criterion::kManipulability;
   Estimator estimator = Estimator::kLeastSquares;
-  std::uint64_t seed = 0;   ///< explore: direction of the start gradient; reset: the run; branch
-  bool reseed = false;      ///< branch: the sensors' noise goes on from `seed`
-  int max_cycles = 0;       ///< explore: 0 = parameter exploration.max_cycles
-  bool continuous = false;  ///< rotate
-  double angle_rad = 0;     ///< rotate, signed
+  std::uint64_t seed = 0;                  ///< explore: direction of the start gradient; branch
+  bool reseed = false;                     ///< branch: the sensors' noise goes on from `seed`
+  int max_cycles = 0;                      ///< explore: 0 = parameter exploration.max_cycles
+  bool continuous = false;                 ///< rotate
+  double angle_rad = 0;                    ///< rotate, signed
   Vector3d axis_W = Vector3d::UnitZ();     ///< rotate, unit
   double speed_rad_s = 0;                  ///< rotate: 0 = parameter gait.speed_rad_s
   Vector3d offset_W = Vector3d::Zero();    ///< move: of the object's centre [m]
@@ -52,7 +48,6 @@ struct Command {
   double duration_s = 0;                ///< push
   int parameter = -1;                   ///< index into ParameterTable()
   Vector3d value = Vector3d::Zero();
-  std::shared_ptr<const ObjectModel> object;  ///< reset: the new object, or null to keep it
 };
 
 }  // namespace regrasp

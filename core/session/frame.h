@@ -21,12 +21,15 @@ enum class SessionState : std::uint8_t {
   kRotating,
   kMoving,
   kDropped,
-  kFaulted
+  kFaulted,
+  kReleasing
 };
 enum class FingerRole : std::uint8_t { kFree, kHold, kExplore, kMove };
 
 std::string_view Name(SessionState state);  ///< "idle", ...
 std::string_view Name(FingerRole role);     ///< "free", "hold", "explore", "move"
+/// Whether the fingers hold the object by themselves. `stand_in`: the stand-in holds it.
+bool HoldsAlone(SessionState state, bool stand_in);
 
 /// One finger, in one tick.
 struct FingerFrame {

@@ -118,8 +118,27 @@ std::string_view Name(SessionState state) {
       return "dropped";
     case SessionState::kFaulted:
       return "faulted";
+    case SessionState::kReleasing:
+      return "releasing";
   }
   return "";
+}
+
+bool HoldsAlone(SessionState state, bool stand_in) {
+  switch (state) {
+    case SessionState::kGrasping:
+    case SessionState::kHolding:
+    case SessionState::kExploring:
+    case SessionState::kRotating:
+    case SessionState::kMoving:
+      return !stand_in;
+    case SessionState::kIdle:
+    case SessionState::kReleasing:
+    case SessionState::kDropped:
+    case SessionState::kFaulted:
+      return false;
+  }
+  return false;
 }
 
 std::string_view Name(FingerRole role) {

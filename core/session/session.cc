@@ -9,7 +9,9 @@ namespace {
 
 class StageClock {
  public:
-  explicit StageClock(bool on) : on_(on) { Restart(); }
+  explicit StageClock(bool on) : on_(on) {
+    if (on_) last_ = std::chrono::steady_clock::now();
+  }
   double Lap() {
     if (!on_) return 0;
     const auto now = std::chrono::steady_clock::now();
@@ -19,9 +21,6 @@ class StageClock {
   }
 
  private:
-  void Restart() {
-    if (on_) last_ = std::chrono::steady_clock::now();
-  }
   bool on_;
   std::chrono::steady_clock::time_point last_;
 };
@@ -32,18 +31,85 @@ Session::Impl::Impl(SessionConfig c)
     : config(std::move(c)),
       hand(config.model.hand),
       dt(config.world.dt),
+      start(MakeStart(config)),
+      seed(config.seed),
       parameters(config.parameters),
       noise(config.noise),
-      object(std::make_shared<const ObjectModel>(config.model.object)),
+      world(hand, config.model.object, config.world, start.q_open, start.X_WO, seed),
+      sensors(hand, dt, seed),
       estimator(hand, dt),
       judge(hand, dt),
-      controller(hand, dt) {
-  Build(config.seed);
+      controller(hand, dt),
+      torque(JointVector::Zero(hand.num_joints())) {
+  world.SetStandIn(true);
+  ApplyParameters();
+  sensors.SetNoise(noise);
+  tasks.resize(hand.fingers.size());
+  Context().ToPosture(start.q_open);
+  Sense();
+}
+
+FingerSet Session::Impl::GraspFingers() const {
+  FingerSet fingers;
+  for (int i = 0; i < hand.num_fingers(); ++i)
+    if (tasks[i].mode != FingerMode::kPosture) fingers.add(i);
+  return fingers;
+}
+
+ActivityContext Session::Impl::Context() {
+  const ControlTick now{hand,
+                        estimator.estimate(),
+                        GraspFingers(),
+                        monitor.margins(),
+                        parameters.gravity_W,
+                        parameters.control,
+                        parameters.exploration,
+                        parameters.gait,
+                        dt};
+  return {now, tick, seed, parameters, start, controller, tasks, world, judge, log, job};
+}
+
+Activity* Session::Impl::Running(SessionState in) {
+  switch (in) {
+    case SessionState::kGrasping:
+      return &grasp;
+    case SessionState::kReleasing:
+      return &release;
+    case SessionState::kExploring:
+      return &explore;
+    case SessionState::kRotating:
+      return &rotate;
+    case SessionState::kMoving:
+      return &move;
+    case SessionState::kIdle:
+    case SessionState::kHolding:
+    case SessionState::kDropped:
+    case SessionState::kFaulted:
+      return nullptr;
+  }
+  return nullptr;
 }
 
 void Session::Impl::Sense() {
-  reading = &sensors->Read(tick, world->state());
-  estimator.Update(*reading, parameters.control);
+  estimator.Update(sensors.Read(tick, world.state()), parameters.control);
+}
+
+void Session::Impl::HoldAll() {
+  for (FingerTask& task : tasks) {
+    if (task.mode == FingerMode::kPosture) continue;  // never took part in the grasp
+    task.mode = FingerMode::kHold;
+    task.cap = parameters.control.max_normal_force;
+    task.grip = parameters.control.grip_force;
+  }
+}
+
+ObjectMotion Session::Impl::Act() {
+  if (state == SessionState::kHolding) HoldAll();
+  Activity* running = Running(state);
+  if (!running) return {};
+  const ActivityStep step = running->Update(Context());
+  if (step.ended()) Finish(step);
+  return step.motion;
 }
 
 void Session::Impl::Tick() {
@@ -53,7 +119,7 @@ void Session::Impl::Tick() {
   }
   StageClock clock(measure);
   Sense();
-  if (tick % kJudgeInterval == 0) LookAtTruth();
+  if (tick % kJudgeInterval == 0) judge.Look(tick, world.state(), parameters.control);
   times.sense_s = clock.Lap();
 
   Feel();
@@ -62,35 +128,22 @@ void Session::Impl::Tick() {
   WatchContacts();
   WatchDrop();
   if (push_until >= 0 && tick >= push_until) {
-    world->SetPush(Vector3d::Zero());
+    world.SetPush(Vector3d::Zero());
     push_until = -1;
   }
-  motion = ObjectMotion();
-  if (release_tick >= 0) {
-    UpdateRelease();
-  } else if (state == SessionState::kGrasping) {
-    UpdateGrasp();
-  } else if (state == SessionState::kExploring) {
-    UpdateExploration();
-  } else if (state == SessionState::kRotating) {
-    UpdateRotation();
-  } else if (state == SessionState::kMoving) {
-    UpdateMove();
-  } else if (state == SessionState::kHolding) {
-    HoldAll();
-  }
+  motion = Act();
   torque = controller.Update(estimator.estimate(), tasks, motion, parameters.gravity_W,
                              parameters.control);
-  AddReleasePull();
+  if (const Activity* running = Running(state)) running->AddTorque(Context(), &torque);
   times.control_s = clock.Lap();
 
-  world->SetTorque(torque);
-  const StepStatus status = world->Step();
+  world.SetTorque(torque);
+  const StepStatus status = world.Step();
   ++tick;
-  times.collide_s = world->stage_times().collide_s;
-  times.step_s = world->stage_times().step_s;
+  times.collide_s = world.stage_times().collide_s;
+  times.step_s = world.stage_times().step_s;
   if (status == StepStatus::kFault) {
-    Emit(EventKind::kFault, -1, 0, "simulation fault: %.60s", world->fault_message());
+    log.Emit(tick, EventKind::kFault, -1, 0, "simulation fault: %.60s", world.fault_message());
     FinishJob(JobState::kFailed, "simulation fault");
     Enter(SessionState::kFaulted);
   }
@@ -108,7 +161,6 @@ const SessionConfig& Session::config() const { return impl_->config; }
 const Parameters& Session::parameters() const { return impl_->parameters; }
 const NoiseLevels& Session::noise() const { return impl_->noise; }
 std::uint64_t Session::seed() const { return impl_->seed; }
-const std::string& Session::object_name() const { return impl_->object->name; }
 
 void Session::Snapshot(Frame* frame, bool with_hash) const {
   impl_->Snapshot(frame);
@@ -116,12 +168,7 @@ void Session::Snapshot(Frame* frame, bool with_hash) const {
 }
 
 std::uint64_t Session::StateHash() const { return impl_->Hash(); }
-
-std::span<const Event> Session::TakeEvents() {
-  impl_->events_out = impl_->events;
-  impl_->events.clear();
-  return {impl_->events_out.data(), impl_->events_out.size()};
-}
+std::span<const Event> Session::TakeEvents() { return impl_->log.Take(); }
 
 std::span<const JobRecord> Session::TakeFinishedJobs() {
   impl_->finished_out = impl_->finished;
@@ -131,12 +178,12 @@ std::span<const JobRecord> Session::TakeFinishedJobs() {
 
 void Session::MeasureStages(bool on) {
   impl_->measure = on;
-  impl_->world->MeasureStages(on);
+  impl_->world.MeasureStages(on);
 }
 Session::StageTimes Session::stage_times() const { return impl_->times; }
-const RegraspRecord& Session::last_regrasp() const { return impl_->regrasp; }
-const WorldState& Session::truth() const { return impl_->world->state(); }
+const RegraspRecord& Session::last_regrasp() const { return impl_->rotate.last_regrasp(); }
+const WorldState& Session::truth() const { return impl_->world.state(); }
 const FeltSurface& Session::felt_surface() const { return impl_->felt; }
-const World& Session::world() const { return *impl_->world; }
+const World& Session::world() const { return impl_->world; }
 
 }  // namespace regrasp

@@ -3,7 +3,7 @@
 /// The whole product without threads, sockets or clocks: simulation, sensors, controller,
 /// exploration, gait. The daemon adds pacing and sockets; tests and batch runs call Tick() directly
 /// and see the same bits. Same build, configuration, seed and (tick, command) list give the same
-/// states.
+/// states. A session is one run: a reset is a new session.
 
 #include <cstdint>
 #include <memory>
@@ -60,7 +60,6 @@ class Session {
   const Parameters& parameters() const;
   const NoiseLevels& noise() const;
   std::uint64_t seed() const;
-  const std::string& object_name() const;
 
   /// Copies the newest frame. `with_hash` also fills Frame::state_hash.
   void Snapshot(Frame* frame, bool with_hash) const;

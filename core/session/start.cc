@@ -1,81 +1,19 @@
-#include <algorithm>
+#include "core/session/start.h"
 
-#include "core/session/session_impl.h"
+#include <algorithm>
+#include <initializer_list>
+
+#include "core/common/random.h"
+#include "core/hand/kinematics.h"
+#include "core/session/session.h"
 
 namespace regrasp {
 namespace {
 
 constexpr std::uint64_t kStartStream = 1000;  // random stream of the start posture
 
-}  // namespace
-
-void Session::Impl::Build(std::uint64_t new_seed) {
-  seed = new_seed;
-  RandomStream start(seed, kStartStream);
-  const Scenario& scenario = config.model.scenario;
-  JointVector q0 = scenario.q_preshape;
-  q_closed = scenario.q_closed;
-  for (int j = 0; j < hand.num_joints(); ++j) {
-    // The same offset for both, so that the fingers really touch elsewhere.
-    const double offset = parameters.start.joint_sigma_rad * start.Normal();
-    q0[j] = std::clamp(q0[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
-    q_closed[j] = std::clamp(q_closed[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
-  }
-  Displace(scenario.X_WO.translation(), &start, {&q0, &q_closed});
-  Isometry3d X_WO = scenario.X_WO;
-  X_WO.translation() += parameters.start.object_sigma_m * start.Normal3();
-  world = std::make_unique<World>(hand, *object, config.world, q0, X_WO, seed);
-  world->SetStandIn(true);
-  world->SetFriction(parameters.object.friction);
-  world->SetMass(parameters.object.mass_kg);
-  world->SetGravity(parameters.gravity_W);
-  world->MeasureStages(measure);
-  sensors = std::make_unique<Sensors>(hand, dt, seed);
-  sensors->SetNoise(noise);
-  judge_sensors = std::make_unique<Sensors>(hand, dt, 0);
-  estimator.Reset();
-  judge.Reset();
-  felt.Reset();
-  controller = HybridController(hand, dt);
-  grasp = GraspSequence();
-  exploration = FingerExploration();
-  explore_request = {};
-  gait = FingerGait();
-  move = ObjectMove();
-  regrasp = RegraspRecord();
-  monitor = QualityMonitor();
-  q_open = q0;
-  tick = 0;
-  state = SessionState::kIdle;
-  job = JobRecord();
-  push_until = -1;
-  drop_ticks = 0;
-  release_tick = -1;
-  tasks.resize(hand.fingers.size());
-  was_in_contact.fill(false);
-  ToPosture(q_open);
-  torque = JointVector::Zero(hand.num_joints());
-  Sense();
-}
-
-void Session::Impl::Displace(const Vector3d& p_WO, RandomStream* random,
-                             std::initializer_list<JointVector*> postures) {
-  for (int i = 0; i < hand.num_fingers(); ++i) {
-    const Vector3d direction = random->Normal3();
-    if (parameters.start.displacement_m == 0) continue;
-    for (JointVector* q : postures) {
-      KinematicsData data;
-      ForwardKinematics(hand, *q, &data);
-      const Vector3d tip = FingertipCentre(hand, data, i);
-      const Vector3d target =
-          tip + parameters.start.displacement_m *
-                    TangentPart(direction, (tip - p_WO).normalized()).normalized();
-      MoveTip(i, target, q);
-    }
-  }
-}
-
-void Session::Impl::MoveTip(int finger, const Vector3d& target, JointVector* q) const {
+/// Inverse kinematics of one fingertip by damped least squares; stops at joint limits.
+void MoveTip(const HandModel& hand, int finger, const Vector3d& target, JointVector* q) {
   KinematicsData data;
   for (int k = 0; k < 20; ++k) {
     ForwardKinematics(hand, *q, &data);
@@ -91,22 +29,40 @@ void Session::Impl::MoveTip(int finger, const Vector3d& target, JointVector* q) 
   }
 }
 
-void Session::Impl::ToPosture(const JointVector& q) {
+/// Moves each fingertip's way in by `displacement` [m], along the surface in a random direction.
+void Displace(const HandModel& hand, double displacement, const Vector3d& p_WO,
+              RandomStream* random, std::initializer_list<JointVector*> postures) {
   for (int i = 0; i < hand.num_fingers(); ++i) {
-    const auto& joints = hand.fingers[i].joints;
-    tasks[i] = FingerTask();
-    tasks[i].q_target.resize(static_cast<Eigen::Index>(joints.size()));
-    for (std::size_t k = 0; k < joints.size(); ++k) tasks[i].q_target[k] = q[joints[k]];
+    const Vector3d direction = random->Normal3();
+    if (displacement == 0) continue;
+    for (JointVector* q : postures) {
+      KinematicsData data;
+      ForwardKinematics(hand, *q, &data);
+      const Vector3d tip = FingertipCentre(hand, data, i);
+      const Vector3d along = TangentPart(direction, (tip - p_WO).normalized()).normalized();
+      MoveTip(hand, i, tip + displacement * along, q);
+    }
   }
 }
 
-void Session::Impl::HoldAll() {
-  for (FingerTask& task : tasks) {
-    if (task.mode == FingerMode::kPosture) continue;  // never took part in the grasp
-    task.mode = FingerMode::kHold;
-    task.cap = parameters.control.max_normal_force;
-    task.grip = parameters.control.grip_force;
+}  // namespace
+
+StartPosture MakeStart(const SessionConfig& config) {
+  const HandModel& hand = config.model.hand;
+  const Scenario& scenario = config.model.scenario;
+  const StartParameters& spread = config.parameters.start;
+  RandomStream random(config.seed, kStartStream);
+  StartPosture start{scenario.q_preshape, scenario.q_closed, scenario.X_WO};
+  for (int j = 0; j < hand.num_joints(); ++j) {
+    // The same offset for both, so that the fingers really touch elsewhere.
+    const double offset = spread.joint_sigma_rad * random.Normal();
+    for (JointVector* q : {&start.q_open, &start.q_closed})
+      (*q)[j] = std::clamp((*q)[j] + offset, hand.joints[j].lower, hand.joints[j].upper);
   }
+  Displace(hand, spread.displacement_m, scenario.X_WO.translation(), &random,
+           {&start.q_open, &start.q_closed});
+  start.X_WO.translation() += spread.object_sigma_m * random.Normal3();
+  return start;
 }
 
 }  // namespace regrasp

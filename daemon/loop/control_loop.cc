@@ -111,10 +111,10 @@ void ControlLoop::TakeRequests() {
     taken_ = taken.number;
     switch (taken.request.kind) {
       case ControlRequest::Kind::kCommand:
-        if (taken.request.command.type == CommandType::kReset)
-          Reset(taken.request.command);
-        else
-          commands_.push_back(std::move(taken));
+        commands_.push_back(std::move(taken));
+        break;
+      case ControlRequest::Kind::kReset:
+        Reset(taken.request);
         break;
       case ControlRequest::Kind::kPause:
         paused_ = true;
@@ -222,10 +222,10 @@ void ControlLoop::CancelEverything(const char* why) {
   }
 }
 
-void ControlLoop::Reset(const Command& command) {
+void ControlLoop::Reset(const ControlRequest& request) {
   SessionConfig next = config_.session;
-  if (command.object) next.model.object = *command.object;
-  next.seed = command.seed;
+  if (request.object) next.model.object = *request.object;
+  next.seed = request.seed;
   next.noise = session_->noise();
   next.parameters = session_->parameters();
   for (const Waiting& waiting : commands_) {
@@ -233,12 +233,12 @@ void ControlLoop::Reset(const Command& command) {
     if (earlier.type == CommandType::kNoise) next.noise = earlier.noise;
     if (earlier.type == CommandType::kParameter) SetParameter(&next.parameters, earlier);
   }
-  next.parameters = ParametersAfterReset(next.parameters, command.object.get());
+  next.parameters = ParametersAfterReset(next.parameters, request.object.get());
   CancelEverything("the simulation was reset");
 
   Event event;
   event.kind = EventKind::kReset;
-  event.value = static_cast<double>(command.seed);
+  event.value = static_cast<double>(request.seed);
   try {
     auto fresh = std::make_unique<Session>(next);
     session_ = std::move(fresh);
@@ -248,7 +248,8 @@ void ControlLoop::Reset(const Command& command) {
     start->journal.config = std::move(next);
     BeginJournal(std::move(start));
     std::snprintf(event.text, sizeof event.text, "reset: seed %llu, object %s",
-                  static_cast<unsigned long long>(command.seed), session_->object_name().c_str());
+                  static_cast<unsigned long long>(request.seed),
+                  session_->config().model.object.name.c_str());
   } catch (const std::exception& e) {
     event.kind = EventKind::kRefused;
     event.tick = session_->tick();

@@ -29,12 +29,15 @@ struct ControlRequest {
     kCancelStep,  ///< ends a step or a restore
     kMark,        ///< tells tick and state hash, see JournalNews
     kRestore,
+    kReset,  ///< a new session
   };
   Kind kind = Kind::kCommand;
   Command command = {};    ///< kCommand; kRestore: the branch command (job, reseed, seed)
   std::int64_t job = 0;    ///< kStep, kCancelStep, kRestore
   std::int64_t ticks = 0;  ///< kStep
   std::shared_ptr<const Checkpoint> checkpoint = {};  ///< kRestore
+  std::uint64_t seed = 0;                             ///< kReset
+  std::shared_ptr<const ObjectModel> object = {};     ///< kReset: the new one, null: the same
 };
 
 /// How a run began: at tick 0, or as the continuation of a checkpoint.
@@ -96,7 +99,7 @@ class ControlLoop {
   // The I/O thread's side.
 
   /// Queues a request. Returns its number, or 0 when the queue is full. Commands take effect before
-  /// the next tick, in order; a reset at once, even while paused.
+  /// the next tick, in order; a reset takes effect at once, even while paused.
   std::uint64_t Post(ControlRequest request);
   /// Requests up to this number have been taken: applied, or (while paused) waiting for the next
   /// tick. A frame that shows their effect has been published before.
@@ -132,7 +135,7 @@ class ControlLoop {
   void Run();
   void TakeRequests();
   void ApplyWaiting();
-  void Reset(const Command& command);
+  void Reset(const ControlRequest& request);
   void CancelEverything(const char* why);
   void BeginRestore(ControlRequest request);
   void RestoreSome();

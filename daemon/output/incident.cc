@@ -57,9 +57,7 @@ void FindMarginAndLifted(Incident* incident) {
     incident->lifted = -1;
     if (frame->gait.active && frame->gait.finger >= 0 && !Touches(*frame, frame->gait.finger))
       incident->lifted = frame->gait.finger;
-    const bool alone =
-        frame->state == SessionState::kHolding || frame->state == SessionState::kExploring ||
-        frame->state == SessionState::kRotating || frame->state == SessionState::kMoving;
+    const bool alone = HoldsAlone(frame->state, frame->stand_in);
     const double margin = frame->stability.load_margin;
     if (!alone || (incident->has_margin && margin >= incident->least_margin)) continue;
     incident->has_margin = true;

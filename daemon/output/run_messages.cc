@@ -43,7 +43,7 @@ std::vector<Field> Fields(RunTopic topic) {
               kTick,
               kTime,
               {"state", "string",
-               "idle, grasping, holding, exploring, rotating, moving, dropped, faulted"},
+               "idle, grasping, holding, exploring, rotating, moving, releasing, dropped, faulted"},
               {"commands", "integer", "of the segment, applied before this state"},
               {"state_hash", "string", "of the whole simulation and controller"}};
     case RunTopic::kEvents:

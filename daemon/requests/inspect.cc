@@ -35,6 +35,7 @@ Json StatusJson(Service& service) {
       {"hand", service.hand().name},
       {"object", service.accepted.object->name},
       {"stand_in", frame.stand_in},
+      {"holds_alone", HoldsAlone(frame.state, frame.stand_in)},
       {"job", std::move(job)},
       {"incident", service.incident_summary()},
       {"gait", GaitJson(frame.gait, service.hand())},

@@ -215,7 +215,7 @@ void Service::CheckNotRestoring() const {
 }
 
 void Service::CheckAllowed(CommandType type) const {
-  if (type != CommandType::kReset) CheckNotFaulted();
+  CheckNotFaulted();
   const Verdict verdict = Check(type, newest_.frame.state, jobs_.Unfinished() != nullptr);
   if (verdict.kind == Verdict::Kind::kAllowed) return;
   const bool busy = verdict.kind == Verdict::Kind::kBusy;

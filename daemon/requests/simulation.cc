@@ -184,24 +184,23 @@ Outcome Step(Service& service, const Params& params, Client&) {
 
 Outcome Reset(Service& service, const Params& params, Client&) {
   service.CheckNotRestoring();
-  Command command = Of(CommandType::kReset);
-  command.seed = static_cast<std::uint64_t>(
+  ControlRequest request;
+  request.kind = ControlRequest::Kind::kReset;
+  request.seed = static_cast<std::uint64_t>(
       params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
   if (params.Has("object")) {
     try {
-      command.object = std::make_shared<const ObjectModel>(
+      request.object = std::make_shared<const ObjectModel>(
           LoadObject(params.String("object"), service.config().search_path));
     } catch (const ModelError& e) {
       throw RpcException(RpcError{ErrorCode::kIo, e.what(), "correct the model", "object", {}});
     }
   }
-  ControlRequest request;
-  request.command = command;
-  const std::uint64_t barrier = service.Post(std::move(request));
+  const std::uint64_t barrier = service.Post(request);
   Service::Accepted& accepted = service.accepted;
-  accepted.seed = command.seed;
-  accepted.parameters = ParametersAfterReset(accepted.parameters, command.object.get());
-  if (command.object) accepted.object = command.object;
+  accepted.seed = request.seed;
+  accepted.parameters = ParametersAfterReset(accepted.parameters, request.object.get());
+  if (request.object) accepted.object = request.object;
   return {.result = {{"seed", accepted.seed}, {"object", accepted.object->name}},
           .barrier = barrier};
 }

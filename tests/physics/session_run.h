@@ -59,9 +59,6 @@ class SessionRun {
       c->duration_s = seconds;
     });
   }
-  Verdict Reset(std::uint64_t seed) {
-    return Give(CommandType::kReset, [&](Command* c) { c->seed = seed; });
-  }
 
   void Tick() {
     session.Tick();

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/sensing/sensors.h"
 #include "tests/physics/malloc_counter.h"
 #include "tests/physics/session_run.h"
 
@@ -124,8 +125,6 @@ TEST(Session, LowFrictionLosesTheObject) {
   EXPECT_EQ(run.Count(EventKind::kDropped), 1);
   EXPECT_EQ(run.Give(CommandType::kGrasp).kind,
             Kind::kBadState);  // nothing to grasp before a reset
-  EXPECT_EQ(run.Reset(1).kind, Kind::kAllowed);
-  EXPECT_EQ(run.session.state(), SessionState::kIdle);
 }
 
 TEST(Session, LosingTheObjectFailsTheExploration) {
@@ -177,6 +176,66 @@ TEST(Session, EachFingerExploresUphillWithoutDrop) {
         job.explore.phi_true_initial, job.explore.phi_true_final, job.explore.cycles,
         Name(job.explore.reason).data());
   }
+}
+
+TEST(Session, ProgressOfAnExplorationIsAgainstWhatWasAskedFor) {
+  SessionRun run;
+  ASSERT_TRUE(run.Grasp());
+  ASSERT_EQ(run.Explore(3, 1, 800).kind, Kind::kAllowed);
+  double progress = 0;
+  int cycle = 0;
+  while (run.session.job_running()) {
+    run.Tick();
+    const Frame frame = run.Snapshot();
+    if (!run.session.job_running()) break;
+    EXPECT_GE(frame.job.progress, progress);  // never back
+    progress = frame.job.progress;
+    cycle = std::max(cycle, frame.exploration.cycle);
+  }
+  // It is brought up to date every 10 cycles and stops at 0.99 until the job is done.
+  EXPECT_NEAR(progress, std::min(0.99, cycle / 800.0), 10.0 / 800);
+}
+
+TEST(Session, ReleasingIsAState) {
+  SessionRun run;
+  ASSERT_TRUE(run.Grasp());
+  ASSERT_EQ(run.Give(CommandType::kRelease).kind, Kind::kAllowed);
+  EXPECT_EQ(run.session.state(), SessionState::kReleasing);
+  run.Tick();
+  ASSERT_EQ(run.Give(CommandType::kStop).kind, Kind::kAllowed);  // is not interrupted
+  EXPECT_EQ(run.session.state(), SessionState::kReleasing);
+  EXPECT_EQ(run.Explore(0).kind, Kind::kBusy);
+  run.last_job = 2;
+  ASSERT_TRUE(run.FinishJob(1));
+  EXPECT_EQ(run.Job().state, JobState::kDone);
+  EXPECT_EQ(run.session.state(), SessionState::kIdle);
+  for (const SessionState state : {SessionState::kIdle, SessionState::kReleasing,
+                                   SessionState::kDropped, SessionState::kFaulted})
+    EXPECT_FALSE(HoldsAlone(state, false)) << Name(state);
+  EXPECT_FALSE(HoldsAlone(SessionState::kGrasping, true));
+  EXPECT_TRUE(HoldsAlone(SessionState::kGrasping, false));
+}
+
+// What frames show as the truth of a fingertip is what its sensor would feel without noise.
+TEST(Session, TruthOfAFingertipIsItsNoiseFreeReading) {
+  SessionRun run(ShadowConfig(1, "off"));
+  ASSERT_TRUE(run.Grasp());
+  ASSERT_EQ(run.Explore(3, 1, 500).kind, Kind::kAllowed);
+  int touching = 0;
+  for (int k = 0; k < 1500; ++k) {
+    run.Tick();
+    const WorldState& truth = run.session.truth();
+    const Frame frame = run.Snapshot();
+    for (int i = 0; i < frame.num_fingers; ++i) {
+      const FingertipReading reading = TrueFingertip(truth, i);
+      ASSERT_EQ(frame.fingers[i].true_contact, reading.in_contact);
+      if (!reading.in_contact) continue;
+      ++touching;
+      ASSERT_EQ(frame.fingers[i].true_p_WC, reading.p_WC);
+      ASSERT_EQ(frame.fingers[i].true_normal_W, reading.normal_W);
+    }
+  }
+  EXPECT_GT(touching, 5000);  // five fingers, most of the time
 }
 
 TEST(Session, RefusesWhatItsStateDoesNotAllow) {
@@ -265,32 +324,11 @@ TEST(Session, StopDuringAnExplorationLeadsToHolding) {
   EXPECT_EQ(run.Count(EventKind::kDropped), 0);
 }
 
-TEST(Session, ResetCancelsTheRunningJobAndStartsAnew) {
-  SessionRun run;
-  ASSERT_TRUE(run.Grasp());
-  ASSERT_EQ(run.Explore(2).kind, Kind::kAllowed);
-  const std::int64_t job = run.last_job;
-  run.Ticks(800);
-  EXPECT_EQ(run.Reset(7).kind, Kind::kAllowed);
-  EXPECT_EQ(run.jobs.back().id, job);
-  EXPECT_EQ(run.jobs.back().state, JobState::kCancelled);
-  EXPECT_EQ(run.session.state(), SessionState::kIdle);
-  EXPECT_EQ(run.session.tick(), 0);
-  EXPECT_EQ(run.session.seed(), 7u);
-  EXPECT_FALSE(run.session.job_running());
-  EXPECT_TRUE(run.session.world().stand_in());
-  // Nothing of the old run is left: the same as a session that never had one.
-  SessionRun fresh(7);
-  EXPECT_EQ(run.session.StateHash(), fresh.session.StateHash());
-  ASSERT_TRUE(run.Grasp());
-  ASSERT_TRUE(fresh.Grasp());
-  EXPECT_EQ(run.session.StateHash(), fresh.session.StateHash());
-}
-
 TEST(Session, AFaultedWorldIsAStateNotAnEnd) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), 1e300}) {
     SessionRun run;
     ASSERT_TRUE(run.Grasp());
+    const std::uint64_t grasped = run.session.StateHash();
     ASSERT_EQ(run.Explore(0).kind, Kind::kAllowed);
     run.Ticks(100);
     ASSERT_EQ(run.Push(Vector3d::Constant(bad), 0.1).kind, Kind::kAllowed);
@@ -306,12 +344,10 @@ TEST(Session, AFaultedWorldIsAStateNotAnEnd) {
                                    CommandType::kNoise, CommandType::kPush}) {
       EXPECT_EQ(run.Give(type).kind, Kind::kBadState) << static_cast<int>(type);
     }
-    ASSERT_EQ(run.Reset(1).kind, Kind::kAllowed);
-    EXPECT_EQ(run.session.state(), SessionState::kIdle);
-    SessionRun fresh(1);
-    EXPECT_TRUE(run.Grasp());
-    EXPECT_TRUE(fresh.Grasp());
-    EXPECT_EQ(run.session.StateHash(), fresh.session.StateHash());
+    // A fault stays in its own session: the next run is the same as one in a fresh process.
+    SessionRun next(1);
+    EXPECT_TRUE(next.Grasp());
+    EXPECT_EQ(next.session.StateHash(), grasped);
   }
 }
 

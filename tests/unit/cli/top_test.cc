@@ -17,17 +17,12 @@ namespace {
 constexpr const char* kNames[] = {"first", "middle", "ring", "little", "thumb"};
 
 Json Status(double time_s) {
-  return {{"version", "9.8.7"},
-          {"state", "exploring"},
-          {"paused", false},
-          {"time_s", time_s},
-          {"real_time_factor", 1.0},
-          {"tick_p99_s", 104e-6},
-          {"seed", 7},
-          {"hand", "shadow"},
-          {"object", "sphere"},
-          {"clients", 2},
-          {"noise", {{"preset", "paper"}}}};
+  return {{"version", "9.8.7"},   {"state", "exploring"},
+          {"holds_alone", true},  {"paused", false},
+          {"time_s", time_s},     {"real_time_factor", 1.0},
+          {"tick_p99_s", 104e-6}, {"seed", 7},
+          {"hand", "shadow"},     {"object", "sphere"},
+          {"clients", 2},         {"noise", {{"preset", "paper"}}}};
 }
 
 Json Contacts(double time_s, const char* exploring = nullptr) {

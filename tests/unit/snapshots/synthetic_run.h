@@ -65,7 +65,7 @@ inline std::vector<Frame> SyntheticRun(double seconds, double start_s = 0) {
     frame.state = k < count / 6 ? SessionState::kGrasping
                   : exploring   ? SessionState::kExploring
                                 : SessionState::kHolding;
-    frame.stand_in = false;
+    frame.stand_in = frame.state == SessionState::kGrasping;
     frame.num_fingers = 3;
     frame.fingers.resize(3);
     frame.q = JointVector::Zero(3);

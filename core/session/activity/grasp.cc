@@ -1,0 +1,37 @@
+#include "core/session/activity/grasp.h"
+
+#include <algorithm>
+
+namespace regrasp {
+
+Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) {
+  if (context.world.stand_in()) return {};
+  return {Verdict::Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+}
+
+void GraspActivity::Start(const Command&, const ActivityContext& context) {
+  sequence_.Start(context.now.estimate);
+}
+
+ActivityStep GraspActivity::Update(const ActivityContext& context) {
+  World& world = context.world;
+  sequence_.Update(context.now, context.start.q_closed, &context.controller, &context.tasks);
+  context.job.progress = std::min(0.99, sequence_.progress());
+  if (world.stand_in() != sequence_.needs_stand_in()) {
+    world.SetStandIn(sequence_.needs_stand_in());
+    context.log.Emit(context.tick, EventKind::kStandIn, -1, world.stand_in(), "stand-in %s",
+                     world.stand_in() ? "holds the object" : "let go");
+  }
+  if (sequence_.phase() == GraspSequence::Phase::kDone) return ActivityStep::Ended(JobState::kDone);
+  if (sequence_.phase() != GraspSequence::Phase::kFailed) return {};
+  context.ToPosture(context.start.q_open);
+  return ActivityStep::Failed("fewer than three fingers touched the object", SessionState::kIdle);
+}
+
+ActivityStep GraspActivity::Stop(const ActivityContext& context) {
+  if (!context.world.stand_in()) return ActivityStep::Ended(JobState::kCancelled);
+  context.ToPosture(context.start.q_open);
+  return ActivityStep::Ended(JobState::kCancelled, SessionState::kIdle);
+}
+
+}  // namespace regrasp

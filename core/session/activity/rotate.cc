@@ -1,0 +1,88 @@
+#include "core/session/activity/rotate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/session/activity/explore.h"
+
+namespace regrasp {
+
+void RotateActivity::Start(const Command& command, const ActivityContext& context) {
+  *this = RotateActivity();
+  FingerGait::Request request;
+  request.angle_rad = command.angle_rad;
+  request.continuous = command.continuous;
+  request.axis_W = command.axis_W.normalized();
+  request.speed_rad_s = command.speed_rad_s;
+  request.seed = context.seed;
+  gait_.Start(request, context.now, context.controller.wrench());
+  q_WO_start_ = context.world.state().q_WO;
+}
+
+ActivityStep RotateActivity::Update(const ActivityContext& context) {
+  const ObjectMotion motion = gait_.Update(context.now, &context.controller, &context.tasks);
+  Assess(context);
+  report_.Report(gait_, context);
+  ActivityStep step;
+  if (gait_.phase() == GaitPhase::kFailed) {
+    step = ActivityStep::Failed(gait_.error());
+  } else if (!gait_.active()) {
+    step = ActivityStep::Ended(gait_.stopped() ? JobState::kCancelled : JobState::kDone);
+  }
+  step.motion = motion;
+  return step;
+}
+
+ActivityStep RotateActivity::Stop(const ActivityContext&) {
+  gait_.Stop();
+  return {};
+}
+
+void RotateActivity::Dropped(const ActivityContext& context) { context.job.rotate.dropped = true; }
+
+void RotateActivity::Assess(const ActivityContext& context) const {
+  RotateResult& r = context.job.rotate;
+  const WorldState& truth = context.world.state();
+  const Vector3d& axis = gait_.request().axis_W;
+  const Quaterniond q = truth.q_WO * q_WO_start_.conjugate();
+  const double twist = 2.0 * std::atan2(q.vec().dot(axis), q.w());
+  r.angle_rad += std::remainder(twist - r.angle_rad, 2.0 * std::numbers::pi);
+  r.turns = r.angle_rad / (2.0 * std::numbers::pi);
+  r.max_tilt_rad = std::max(r.max_tilt_rad, std::acos(std::clamp(axis.dot(q * axis), -1.0, 1.0)));
+  r.max_position_error_m =
+      std::max(r.max_position_error_m, (truth.p_WO - context.controller.wrench().p_ref()).norm());
+  r.gait_cycles = gait_.cycles();
+  r.regrasps = gait_.regrasps();
+  r.sim_time_s = context.job_time_s();
+  if (!gait_.request().continuous)
+    context.job.progress = std::clamp(gait_.turned() / gait_.target(), 0.0, 0.99);
+}
+
+void RotateActivity::Record(const ActivityContext& context, Frame* frame) const {
+  GaitFrame& gait = frame->gait;
+  gait.active = true;
+  gait.phase = static_cast<int>(gait_.phase());
+  gait.finger = gait_.finger();
+  gait.target_angle_rad = gait_.turned();
+  gait.achieved_angle_rad = context.job.rotate.angle_rad;
+  gait.cycles = gait_.cycles();
+  gait.regrasps = gait_.regrasps();
+  const Regrasp& regrasp = gait_.regrasp();
+  if (regrasp.phase() != Regrasp::Phase::kExplore) return;
+  const Regrasp::Request& request = regrasp.request();
+  if (context.tasks[request.finger].mode == FingerMode::kSlide)
+    frame->fingers[request.finger].role = FingerRole::kExplore;
+  frame->exploration = FrameOf(request.finger, request.criterion, regrasp.on_stability(),
+                               regrasp.algorithm().cycle(), regrasp.phi(),
+                               context.parameters.exploration.epsilon, regrasp.algorithm());
+}
+
+void RotateActivity::AddTo(StateHasher* hasher) const {
+  gait_.AddTo(hasher);
+  hasher->Add(gait_.request().continuous);
+  hasher->Add(gait_.request().speed_rad_s);
+  hasher->Add(gait_.request().seed);
+}
+
+}  // namespace regrasp

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "core/session/activity/activity.h"
+#include "core/session/gait_report.h"
+
+namespace regrasp {
+
+/// `rotate`: the finger gait.
+class RotateActivity : public Activity {
+ public:
+  void Start(const Command& command, const ActivityContext& context) override;
+  ActivityStep Update(const ActivityContext& context) override;
+  ActivityStep Stop(const ActivityContext& context) override;
+  void Dropped(const ActivityContext& context) override;
+  void Record(const ActivityContext& context, Frame* frame) const override;
+  const RegraspRecord& last_regrasp() const { return report_.last(); }
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  /// The truth about the rotation so far, every tick so that no turn is missed.
+  void Assess(const ActivityContext& context) const;
+
+  FingerGait gait_;
+  GaitReport report_;
+  Quaterniond q_WO_start_ = Quaterniond::Identity();  // true, when the rotation began
+};
+
+}  // namespace regrasp

@@ -1,0 +1,67 @@
+#include "core/session/gait_report.h"
+
+#include <numbers>
+
+namespace regrasp {
+namespace {
+
+bool CountsStability(const Regrasp& regrasp) {
+  return regrasp.request().criterion == Criterion::kStability || regrasp.on_stability();
+}
+
+}  // namespace
+
+double GaitReport::TruePhi(const Regrasp& regrasp, const ActivityContext& context) const {
+  const Regrasp::Request& request = regrasp.request();
+  context.judge.Look(context.tick, context.world.state(), context.parameters.control);
+  return context.judge.Phi(
+      CountsStability(regrasp) ? Criterion::kStability : Criterion::kManipulability, request.finger,
+      context.now.grasp.without(request.without), context.parameters, regrasp.on_stability());
+}
+
+void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& context) {
+  last_.finger = regrasp.request().finger;
+  last_.criterion = regrasp.request().criterion;
+  last_.on_stability = regrasp.on_stability();
+  last_.aborted = regrasp.aborted();
+  last_.phi_after = TruePhi(regrasp, context);
+  if (!regrasp.request().explore) last_.phi_start = last_.phi_before;
+  const bool stability = CountsStability(regrasp);
+  Event& event = context.log.Emit(
+      context.tick, EventKind::kRegrasp, last_.finger, last_.phi_after,
+      "%s regrasped: %s %.4f -> %.4f", context.now.hand.fingers[last_.finger].name.c_str(),
+      stability ? "stability" : "manipulability", last_.phi_before, last_.phi_after);
+  if (regrasp.request().explore && !stability && !last_.aborted) event.from = last_.phi_start;
+}
+
+void GaitReport::Report(const FingerGait& gait, const ActivityContext& context) {
+  const FingerGait::Happened& happened = gait.happened();
+  const Regrasp& regrasp = gait.regrasp();
+  const int finger = regrasp.request().finger;
+  const auto emit = [&](EventKind kind, int of, double value, const char* format, auto... args) {
+    context.log.Emit(context.tick, kind, of, value, format, args...);
+  };
+  if (happened.refused_finger >= 0)
+    emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin,
+         "%s may not leave: load margin %.3f N without it",
+         context.now.hand.fingers[happened.refused_finger].name.c_str(), happened.refused_margin);
+  if (happened.aborted)
+    emit(EventKind::kSlip, finger, happened.error_position,
+         "regrasp broken off: object %.1f mm, %.0f deg off", happened.error_position * 1e3,
+         happened.error_rotation * 180.0 / std::numbers::pi);
+  if (happened.explore_began) last_.phi_start = TruePhi(regrasp, context);
+  if (happened.regrasp_ended) Regrasped(regrasp, context);
+  if (happened.regrasp_began) {
+    last_ = RegraspRecord();
+    last_.phi_before = TruePhi(regrasp, context);
+  }
+  if (!happened.changed || gait.phase() == GaitPhase::kChoose) return;
+  if (gait.phase() == GaitPhase::kRegrasp)
+    emit(EventKind::kGaitPhase, finger, static_cast<double>(gait.phase()), "%s: %s",
+         context.now.hand.fingers[finger].name.c_str(), Name(regrasp.phase()).data());
+  else
+    emit(EventKind::kGaitPhase, -1, static_cast<double>(gait.phase()), "%s",
+         Name(gait.phase()).data());
+}
+
+}  // namespace regrasp

@@ -1,0 +1,24 @@
+#pragma once
+
+/// Events and records of a finger gait, judged by the truth.
+
+#include "core/gait/finger_gait.h"
+#include "core/session/activity/activity.h"
+
+namespace regrasp {
+
+class GaitReport {
+ public:
+  /// After each Update of the gait.
+  void Report(const FingerGait& gait, const ActivityContext& context);
+  /// The newest regrasp; complete once its event has come.
+  const RegraspRecord& last() const { return last_; }
+
+ private:
+  void Regrasped(const Regrasp& regrasp, const ActivityContext& context);
+  double TruePhi(const Regrasp& regrasp, const ActivityContext& context) const;
+
+  RegraspRecord last_;
+};
+
+}  // namespace regrasp

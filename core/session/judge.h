@@ -1,0 +1,30 @@
+#pragma once
+
+/// What the truth says: noise-free readings in the controller's own terms. For job records and
+/// events only; the controller never sees it.
+
+#include "core/control/estimate.h"
+#include "core/exploration/objective.h"
+#include "core/sensing/sensors.h"
+#include "core/session/parameters.h"
+
+namespace regrasp {
+
+class Judge {
+ public:
+  Judge(const HandModel& hand, double dt) : sensors_(hand, dt, 0), estimator_(hand, dt) {}
+
+  /// Takes the truth after the last step in. `tick` never decreases.
+  void Look(std::int64_t tick, const WorldState& truth, const ControlParameters& parameters);
+  const Estimate& estimate() const { return estimator_.estimate(); }
+  /// What exploration maximises, by the truth last looked at. `fingers`: of the grasp.
+  double Phi(Criterion criterion, int finger, FingerSet fingers, const Parameters& parameters,
+             bool on_stability) const;
+  void AddTo(StateHasher* hasher) const;
+
+ private:
+  Sensors sensors_;  // without noise
+  StateEstimator estimator_;
+};
+
+}  // namespace regrasp
