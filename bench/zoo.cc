@@ -80,7 +80,7 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
     config.parameters.gravity_W = 9.81 * Vector3d(0, std::cos(t), std::sin(t));
   }
   for (const auto& [name, value] : setting.values)
-    *ParameterTable()[FindParameter(name)].access(config.parameters) = value;
+    ParameterTable()[FindParameter(name)].set(&config.parameters, Vector3d(value, 0, 0));
   return config;
 }
 

@@ -16,12 +16,6 @@ namespace {
 
 constexpr double kGravity = 9.81;  // [m/s2], as in the scenario
 
-/// A number or three, as `param set` takes them.
-Json Value(const std::string& text, const std::string& name) {
-  if (text.find(',') == std::string::npos) return ParseNumber(text, "--set " + name);
-  return ParseNumbers(text, 3, "--set " + name);
-}
-
 }  // namespace
 
 std::string ModelName(const std::string& text) {
@@ -89,7 +83,8 @@ std::vector<std::pair<std::string, Json>> Parameters(const Setting& setting) {
     parameters.emplace_back(
         "gravity", std::vector<double>{0, kGravity * std::cos(tilt), kGravity * std::sin(tilt)});
   }
-  for (const auto& [name, value] : setting.set) parameters.emplace_back(name, Value(value, name));
+  for (const auto& [name, value] : setting.set)
+    parameters.emplace_back(name, ParseParameterValue(value));
   return parameters;
 }
 

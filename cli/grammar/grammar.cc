@@ -59,8 +59,8 @@ Arg FromParam(const ParamSpec& param, bool positional) {
     case ParamType::kVector3:
       arg.kind = ArgKind::kVector3;
       break;
-    case ParamType::kNumberOrVector3:
-      arg.kind = ArgKind::kNumberOrVector3;
+    case ParamType::kParameterValue:
+      arg.kind = ArgKind::kParameterValue;
       break;
     default:
       arg.kind = ArgKind::kText;
@@ -161,6 +161,18 @@ std::vector<double> ParseNumbers(const std::string& text, std::size_t count,
         kUsage, fmt::format("{}: '{}' has {} numbers, not {}", what, text, numbers.size(), count));
   }
   return numbers;
+}
+
+Json ParseParameterValue(const std::string& text) {
+  if (text == "true" || text == "false") return text == "true";
+  try {
+    const auto commas = std::count(text.begin(), text.end(), ',');
+    if (commas == 0) return ParseNumber(text, "");
+    if (commas == 2) return ParseNumbers(text, 3, "");
+  } catch (const CliError&) {
+    // A word.
+  }
+  return text;
 }
 
 }  // namespace regrasp::cli

@@ -20,7 +20,7 @@ namespace regrasp::cli {
 
 class Context;
 
-enum class ArgKind { kFlag, kText, kNumber, kInteger, kVector3, kNumberOrVector3 };
+enum class ArgKind { kFlag, kText, kNumber, kInteger, kVector3, kParameterValue };
 
 /// One argument of a command.
 struct Arg {
@@ -110,6 +110,9 @@ std::span<const Arg> GlobalArgs();
 /// `text` as a number, finite, nothing left over. Throws CliError(kUsage) that names `what`.
 double ParseNumber(const std::string& text, const std::string& what);
 /// "X,Y,Z" as numbers, `count` of them.
+/// What the daemon takes for a parameter: a finite number, three of them with commas between, true
+/// or false; anything else goes as a word, which the daemon judges.
+Json ParseParameterValue(const std::string& text);
 std::vector<double> ParseNumbers(const std::string& text, std::size_t count,
                                  const std::string& what);
 

@@ -99,13 +99,8 @@ Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
       CheckRange(arg, typed);
       return typed * arg.scale;
     }
-    case ArgKind::kNumberOrVector3:
-      if (text.find(',') == std::string::npos) {
-        const double typed = ParseNumber(text, name);
-        CheckRange(arg, typed);
-        return typed * arg.scale;
-      }
-      [[fallthrough]];
+    case ArgKind::kParameterValue:
+      return ParseParameterValue(text);
     case ArgKind::kVector3: {
       Json vector = Json::array();
       for (const double typed : ParseNumbers(text, 3, name)) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <string_view>
+
 namespace regrasp {
 
 /// Which stability measure `switched`, `stability` and `combined` use (values of
@@ -10,6 +13,8 @@ enum class StabilityMeasure : int {
   kSqrtDet = 2,
   kIsotropy = 3
 };
+inline constexpr std::array<std::string_view, 4> kStabilityMeasureNames = {
+    "min_singular_value", "epsilon", "sqrt_det", "isotropy"};
 
 /// Constants of the sensing filters, the object-level force control and the joint control. Unit,
 /// range and source of each stand in the parameter table (core/session/parameters.cc).
@@ -20,8 +25,8 @@ struct ControlParameters {
   double contact_filter_s = 0.030;
   double pose_filter_s = 0.050;
   double margin_filter_s = 0.050;  ///< load margins
-  double contact_from_normal =
-      1;  ///< 1: contact point from the sensed normal and the fingertip's known shape
+  /// Contact point from the sensed normal and the fingertip's known shape.
+  bool contact_from_normal = true;
   double fingertip_stiffness = 4000;  ///< how far a fingertip is pressed in per force [N/m]
   // Object wrench: PI law on the object pose.
   double position_stiffness = 200;      ///< [N/m]
@@ -65,7 +70,7 @@ struct ControlParameters {
   double stand_in_release_s = 0.5;  ///< after the ramp the stand-in lets go
   double settle_s = 0.7;            ///< then so long until `holding`
   // Stability.
-  double stability_measure = 0;       ///< StabilityMeasure
+  StabilityMeasure stability_measure = StabilityMeasure::kMinSingularValue;
   double stability_threshold = 0.30;  ///< `switched`: below it stability is maximised
   double drop_distance = 0.030;       ///< object this far from its reference: dropped [m]
 };

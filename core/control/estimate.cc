@@ -79,7 +79,7 @@ const Estimate& StateEstimator::Update(const SensorReading& reading,
     if (f.ever_in_contact) {
       const Vector3d n_L = filter.n_L.normalized();
       f.normal_W = X_WL.linear() * n_L;
-      f.p_WC = X_WL * (parameters.contact_from_normal > 0
+      f.p_WC = X_WL * (parameters.contact_from_normal
                            ? OnFingertip(hand_->links[hand_->fingers[i].tip_link], filter.p_L, n_L,
                                          f.force / parameters.fingertip_stiffness)
                            : filter.p_L);

@@ -1,6 +1,18 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <string_view>
+
 namespace regrasp {
+
+/// How the gradient is estimated. kSecant is the paper's printed line 6; kLeastSquares is the
+/// default.
+enum class Estimator : std::uint8_t { kSecant, kLeastSquares };
+inline constexpr std::array<std::string_view, 2> kEstimatorNames = {"secant", "least_squares"};
+inline std::string_view Name(Estimator estimator) {
+  return kEstimatorNames[static_cast<std::size_t>(estimator)];
+}
 
 /// Constants of Algorithm 1. lambda and sigma are the paper's; the paper gives no number for the
 /// others. Unit, range and source of each stand in the parameter table
@@ -9,9 +21,9 @@ struct ExplorationParameters {
   double sigma = 0.15;  ///< line 2: start gradient, standard deviation per axis, times gradient_max
   double lambda = 0.9;  ///< line 8: sliding mean
   double epsilon = 4.0;            ///< line 3: the gradient norm that counts as converged [1/m]
-  double converged_updates = 10;   ///< line 3: for so many consecutive updates
-  double max_cycles = 8000;        ///< line 3: N_max [ticks]
-  double update_cycles = 50;       ///< line 4: n [ticks]
+  int converged_updates = 10;      ///< line 3: for so many consecutive updates
+  int max_cycles = 8000;           ///< line 3: N_max [ticks]
+  int update_cycles = 50;          ///< line 4: n [ticks]
   double min_displacement = 3e-4;  ///< an update waits until the contact has moved so far [m]
   double gradient_max = 60;        ///< line 7: cap of the gradient norm [1/m]
   double eta = 3e-4;               ///< line 11: speed per gradient [m²/s]

@@ -22,7 +22,7 @@ constexpr double kWait_s = 0.3;          // waiting for so long ends the explora
 constexpr double kLost_s = 0.30;         // sliding without contact for so long ends the exploration
 
 int MaxCycles(const FingerExploration::Request& request, const ExplorationParameters& parameters) {
-  return request.max_cycles > 0 ? request.max_cycles : static_cast<int>(parameters.max_cycles);
+  return request.max_cycles > 0 ? request.max_cycles : parameters.max_cycles;
 }
 
 }  // namespace

@@ -2,10 +2,6 @@
 
 namespace regrasp {
 
-std::string_view Name(Estimator estimator) {
-  return estimator == Estimator::kSecant ? "secant" : "least_squares";
-}
-
 Vector3d SecantEstimator::Gradient(const Vector3d& p_WC_prev, double phi_prev, const Vector3d& p_WC,
                                    double phi, const Matrix3d& R_WC, double min_displacement) {
   const Vector3d dc_C = R_WC.transpose() * (p_WC_prev - p_WC);  // line 5

@@ -11,11 +11,6 @@
 
 namespace regrasp {
 
-/// How the gradient is estimated. kSecant is the paper's printed line 6; kLeastSquares is the
-/// default.
-enum class Estimator : std::uint8_t { kSecant, kLeastSquares };
-std::string_view Name(Estimator estimator);  ///< "secant", "least_squares"
-
 /// The paper's printed rule (lines 5 and 6): component-wise secants between two updates.
 ///
 /// Departures from the print:

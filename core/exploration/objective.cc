@@ -28,7 +28,7 @@ double GraspStability(const Estimate& estimate, FingerSet fingers,
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
   const SingularMeasures m =
       ComputeSingularMeasures({grasp.data(), grasp.size()}, estimate.object_scale);
-  switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.stability_measure))) {
+  switch (parameters.stability_measure) {
     case StabilityMeasure::kSqrtDet:
       return m.sqrt_det;
     case StabilityMeasure::kIsotropy:

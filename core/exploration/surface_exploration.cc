@@ -47,7 +47,7 @@ void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uin
   *this = SurfaceExploration();
   estimator_ = estimator;
   random_ = RandomStream(seed, 0);
-  max_cycles_ = max_cycles > 0 ? max_cycles : static_cast<int>(parameters.max_cycles);
+  max_cycles_ = max_cycles > 0 ? max_cycles : parameters.max_cycles;
   p_WC_start_ = p_WC_prev_ = input.p_WC;
   walls_start_ = input.walls;
   phi_prev_ = input.phi;
@@ -63,7 +63,7 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
                                                       double dt) {
   if (++cycle_ > max_cycles_) return Status::kMaxCycles;  // line 3
   const Matrix3d R_WC = RotationFromZ(input.normal_W);
-  const int n = std::max(1, static_cast<int>(parameters.update_cycles));
+  const int n = std::max(1, parameters.update_cycles);
   const bool least_squares = estimator_ == Estimator::kLeastSquares;
   if (least_squares)
     least_squares_.Add(input.p_WC, input.phi, std::pow(parameters.forgetting, 1.0 / n));
@@ -82,7 +82,7 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
     ++updates_;
     gradient_norm_ = FreeGradient(input, parameters).norm();
     small_updates_ = gradient_norm_ <= parameters.epsilon ? small_updates_ + 1 : 0;
-    if (small_updates_ >= static_cast<int>(parameters.converged_updates)) return Status::kConverged;
+    if (small_updates_ >= parameters.converged_updates) return Status::kConverged;
   }
 
   const Vector3d tangent = FreeGradient(input, parameters);

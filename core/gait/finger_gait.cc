@@ -143,7 +143,7 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const GaitParameters& parameters) const {
   const StanceContact home = HomeOf(finger, parameters);
   Vector3d recall = Vector3d::Zero();
-  if (parameters.mode == static_cast<double>(GaitMode::kExploring)) {
+  if (parameters.mode == GaitMode::kExploring) {
     const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
     recall = Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
   }
@@ -160,8 +160,7 @@ bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench,
 
 void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
   const GaitParameters& parameters = tick.gait;
-  const bool exploring =
-      parameters.mode == static_cast<double>(GaitMode::kExploring) && request_.make_room_for < 0;
+  const bool exploring = parameters.mode == GaitMode::kExploring && request_.make_room_for < 0;
   while (!waiting_.empty()) {
     // The first of the table that waits, or the one farthest from its target.
     int pick = -1;
@@ -170,7 +169,7 @@ void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
       const int i = order_[k].finger;
       if (!waiting_.contains(i)) continue;
       const double distance = (TargetOf(i, wrench, parameters).p_WC - tick.finger(i).p_WC).norm();
-      if (pick >= 0 && (parameters.by_need == 0 || distance <= farthest)) continue;
+      if (pick >= 0 && (!parameters.by_need || distance <= farthest)) continue;
       pick = static_cast<int>(k);
       farthest = distance;
     }
@@ -191,7 +190,7 @@ void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
     }
     Regrasp::Request request;
     request.finger = step.finger;
-    request.hop = parameters.hop > 0;
+    request.hop = parameters.hop;
     request.explore = exploring;
     request.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
     request.criterion = Criterion::kSwitched;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/exploration/exploration_parameters.h"
+
 namespace regrasp {
 
 /// What a regrasping finger looks for (values of gait.mode).
@@ -7,13 +9,14 @@ enum class GaitMode : int {
   kExploring = 0,  ///< the paper's: a better contact, by Algorithm 1
   kReturning = 1,  ///< its first contact
 };
+inline constexpr std::array<std::string_view, 2> kGaitModeNames = {"exploring", "returning"};
 
 /// Constants of the local manipulation controller and the finger gait. Unit, range and source of
 /// each stand in the parameter table (core/session/parameters.cc).
 struct GaitParameters {
-  double mode = 1;     ///< GaitMode
-  double by_need = 0;  ///< 1: the finger farthest from its target first; 0: order of the table
-  double hop = 1;      ///< 1: a finger hops to its target, 0: it slides
+  GaitMode mode = GaitMode::kReturning;
+  bool by_need = false;  ///< the finger farthest from its target first, else the order of the table
+  bool hop = true;       ///< a finger hops to its target, else it slides
   // Object motion.
   double speed_rad_s = 0.3490658504;  ///< object speed during its motion phase (20 deg/s)
   double move_speed = 0.010;          ///< object speed along a shift [m/s]
@@ -52,7 +55,7 @@ struct GaitParameters {
   double disc_radius =
       0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
   double explore_s = 0.5;  ///< longest exploration per regrasp [s]
-  double estimator = 1;    ///< of its gradient: 1 least squares, 0 the printed rule (Estimator)
+  Estimator estimator = Estimator::kLeastSquares;  ///< of its gradient
 };
 
 }  // namespace regrasp

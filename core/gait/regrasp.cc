@@ -148,8 +148,7 @@ void Regrasp::Explore(const ControlTick& tick, const Target& target, FingerTask*
     for (const Wall& wall : input.walls)
       task->v_W -= std::max(0.0, task->v_W.dot(wall.direction_W)) * wall.direction_W;
   } else if (recall) {
-    algorithm_.Start(input, static_cast<Estimator>(static_cast<int>(parameters.estimator)),
-                     request_.seed, 0, exploration);
+    algorithm_.Start(input, parameters.estimator, request_.seed, 0, exploration);
     if (!request_.gradient_W.isZero()) algorithm_.StartFrom(request_.gradient_W);
     Enter(Phase::kExplore);
   } else {

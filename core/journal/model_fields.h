@@ -4,7 +4,7 @@
 
 #include "core/hand/scenario.h"
 #include "core/journal/fields.h"
-#include "core/session/parameters.h"
+#include "core/session/parameter_value.h"
 
 namespace regrasp {
 
@@ -124,26 +124,48 @@ void Fields(A& a, LoadedScenario& m) {
 
 namespace regrasp::fields {
 
+/// Words and booleans as themselves, numbers as a list of one or three.
+inline Json ParameterJson(const ParameterInfo& info, const Vector3d& value) {
+  if (info.type == ParameterType::kWord) return ParameterText(info, value);
+  if (info.type == ParameterType::kBoolean) return value.x() != 0;
+  return std::vector<double>(value.data(), value.data() + info.size());
+}
+
+/// Throws JournalError. Numbers are not held to their range: a model's mass may lie outside.
+inline Vector3d ReadParameter(const ParameterInfo& info, const Json& json) {
+  try {
+    if (json.is_boolean()) return ReadParameterValue(info, json.get<bool>());
+    if (json.is_string()) return ReadParameterValue(info, json.get<std::string>());
+    const auto numbers = json.get<std::vector<double>>();
+    if (numbers.size() != static_cast<std::size_t>(info.size()))
+      throw JournalError(std::string(info.name) + " has the wrong number of numbers");
+    // Former versions wrote words and booleans as lists of one number too.
+    if (info.type == ParameterType::kWord || info.type == ParameterType::kBoolean)
+      return ReadParameterValue(info, numbers.front());
+    Vector3d value = Vector3d::Zero();
+    std::copy(numbers.begin(), numbers.end(), value.data());
+    return value;
+  } catch (const ParameterError& e) {
+    throw JournalError(e.what());
+  } catch (const nlohmann::json::exception&) {
+    throw JournalError(std::string(info.name) + " is of another kind than expected");
+  }
+}
+
 /// Parameters go by the names of their table.
 template <>
 struct Value<Parameters> {
   static Json To(const Parameters& parameters) {
     Json json = Json::object();
-    Parameters copy = parameters;
-    for (const ParameterInfo& info : ParameterTable()) {
-      const double* value = info.access(copy);
-      json[std::string(info.name)] = std::vector<double>(value, value + info.size);
-    }
+    for (const ParameterInfo& info : ParameterTable())
+      json[std::string(info.name)] = ParameterJson(info, info.get(parameters));
     return json;
   }
   static void From(const Json& json, Parameters* parameters) {
-    Load load{json};
     for (const ParameterInfo& info : ParameterTable()) {
-      std::vector<double> value;
-      load(std::string(info.name).c_str(), value);
-      if (value.size() != static_cast<std::size_t>(info.size))
-        throw JournalError(std::string(info.name) + " has the wrong number of numbers");
-      std::copy(value.begin(), value.end(), info.access(*parameters));
+      const auto found = json.find(info.name);
+      if (found == json.end()) throw JournalError(std::string(info.name) + " is missing");
+      info.set(parameters, ReadParameter(info, *found));
     }
   }
 };

@@ -180,8 +180,8 @@ constexpr std::array kParamSet = {
               .required = true,
               .names = NameSource::kParameter},
     ParamSpec{.name = "value",
-              .type = kNumberOrVector3,
-              .sentence = "its new value, in the unit and range that param.get tells",
+              .type = kParameterValue,
+              .sentence = "its new value, of the type and in the range that param.get tells",
               .required = true},
 };
 constexpr std::array kPlot = {
@@ -413,8 +413,8 @@ std::string_view Name(ParamType type) {
       return "name";
     case kVector3:
       return "number[3]";
-    case kNumberOrVector3:
-      return "number or number[3]";
+    case kParameterValue:
+      return "number, number[3], boolean or word";
     case kIntegerPair:
       return "integer[2]";
   }

@@ -25,10 +25,10 @@ enum class ParamType : std::uint8_t {
   kNumber,
   kBool,
   kString,
-  kEnum,             ///< a string out of `values`, or of the names that `names` refers to
-  kVector3,          ///< three numbers
-  kNumberOrVector3,  ///< one number, or three
-  kIntegerPair,      ///< two integers
+  kEnum,            ///< a string out of `values`, or of the names that `names` refers to
+  kVector3,         ///< three numbers
+  kParameterValue,  ///< a number, three numbers, true, false or a word
+  kIntegerPair,     ///< two integers
 };
 std::string_view Name(ParamType type);  ///< as `describe` prints it: "integer", "number[3]", ...
 

@@ -175,11 +175,22 @@ void Session::Impl::ApplyParameters() {
 
 void Session::Impl::SetParameter(const Command& command) {
   const ParameterInfo& info = ParameterTable()[command.parameter];
-  double* p = info.access(parameters);
-  for (int k = 0; k < info.size; ++k) p[k] = command.value[k];
+  info.set(&parameters, command.value);
   ApplyParameters();
-  log.Emit(tick, EventKind::kParameter, -1, command.value[0], "%s = %.6g", info.name.data(),
-           command.value[0]);
+  const Vector3d& v = command.value;
+  const auto name = static_cast<int>(info.name.size());
+  const std::string_view word =
+      info.type == ParameterType::kWord      ? info.words[static_cast<std::size_t>(v[0])]
+      : info.type == ParameterType::kBoolean ? std::string_view(v[0] != 0 ? "true" : "false")
+                                             : std::string_view();
+  if (!word.empty())
+    log.Emit(tick, EventKind::kParameter, -1, v[0], "%.*s = %.*s", name, info.name.data(),
+             static_cast<int>(word.size()), word.data());
+  else if (info.type == ParameterType::kVector)
+    log.Emit(tick, EventKind::kParameter, -1, v[0], "%.*s = [%.6g, %.6g, %.6g]", name,
+             info.name.data(), v[0], v[1], v[2]);
+  else
+    log.Emit(tick, EventKind::kParameter, -1, v[0], "%.*s = %.6g", name, info.name.data(), v[0]);
 }
 
 void Session::Impl::Branch(const Command& command) {

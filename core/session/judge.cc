@@ -7,7 +7,7 @@ namespace {
 ControlParameters Unfiltered(ControlParameters parameters) {
   parameters.joint_filter_s = parameters.force_filter_s = 0;
   parameters.contact_filter_s = parameters.pose_filter_s = 0;
-  parameters.contact_from_normal = 0;
+  parameters.contact_from_normal = false;
   return parameters;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 /// Every number that may be changed while running, with unit, range and source: the table behind
-/// `param list|get|set`, the configuration file and the documentation.
+/// `param list|get|set`, the configuration file and the documentation. A new parameter is a member
+/// of one of the structures and a row of the table in parameters.cc.
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -34,14 +36,30 @@ struct Parameters {
   GaitParameters gait;
 };
 
+/// How a parameter's value is written, and what it may be.
+enum class ParameterType : std::uint8_t {
+  kReal,     ///< one number
+  kInteger,  ///< one number without fraction
+  kBoolean,  ///< true or false
+  kWord,     ///< one of a list of words
+  kVector,   ///< three numbers: a vector in W
+};
+std::string_view Name(ParameterType type);  ///< "real", "integer", "boolean", "word", "vector"
+
+/// One row of the table. A value of any type goes as three numbers: (x, 0, 0) for one number, 0 or
+/// 1 for a boolean, the place in `words` for a word.
 struct ParameterInfo {
-  std::string_view name;           ///< "exploration.lambda"
-  std::string_view unit;           ///< "" when dimensionless
-  double min, max;                 ///< per component, inclusive
-  int size;                        ///< 1, or 3 for a vector in W
-  std::string_view description;    ///< one sentence
-  std::string_view source;         ///< "paper", "PHYSICS: measured", "ours: ..." and so on
-  double* (*access)(Parameters&);  ///< first component
+  std::string_view name;  ///< "exploration.lambda"
+  ParameterType type = ParameterType::kReal;
+  std::string_view unit;                                ///< "" when dimensionless
+  double min = 0, max = 0;                              ///< per component, inclusive
+  std::span<const std::string_view> words = {};         ///< kWord: in the order of their numbers
+  std::string_view meaning;                             ///< one sentence
+  std::string_view source;                              ///< of the default: "paper", "ours", ...
+  Vector3d (*get)(const Parameters&) = nullptr;         ///< components beyond size() are 0
+  void (*set)(Parameters*, const Vector3d&) = nullptr;  ///< the value must be allowed
+
+  int size() const { return type == ParameterType::kVector ? 3 : 1; }
 };
 
 struct LoadedScenario;

@@ -23,7 +23,7 @@ void QualityMonitor::Update(const Estimate& estimate, FingerSet fingers, const V
   }
   SmoothMargins(dt / (parameters.margin_filter_s + dt));
 
-  switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.stability_measure))) {
+  switch (parameters.stability_measure) {
     case StabilityMeasure::kMinSingularValue:
       stability_.active = m.min_singular_value;
       break;

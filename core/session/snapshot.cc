@@ -111,9 +111,10 @@ std::uint64_t Session::Impl::Hash() const {
   hasher.Add(push_until);
   hasher.Add(job.start_tick);
   hasher.Add(drop_ticks);
-  Parameters given = parameters;
-  for (const ParameterInfo& info : ParameterTable())
-    for (int k = 0; k < info.size; ++k) hasher.Add(info.access(given)[k]);
+  for (const ParameterInfo& info : ParameterTable()) {
+    const Vector3d value = info.get(parameters);
+    for (int k = 0; k < info.size(); ++k) hasher.Add(value[k]);
+  }
   return hasher.Digest();
 }
 

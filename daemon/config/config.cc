@@ -10,7 +10,8 @@
 
 #include "core/common/nearest_name.h"
 #include "core/protocol/config_path.h"
-#include "daemon/wire/json.h"
+#include "core/session/parameter_value.h"
+#include "daemon/wire/frame_json.h"
 
 namespace regrasp {
 namespace {
@@ -33,6 +34,22 @@ std::string Written(const toml::node& node) {
   return written.substr(0, end) + "...";
 }
 
+/// What a node gives for a parameter; nothing where it is neither number, boolean, word nor list of
+/// numbers.
+std::optional<GivenValue> Given(const toml::node& node) {
+  if (const auto flag = node.as_boolean()) return flag->get();
+  if (const auto text = node.as_string()) return text->get();
+  if (node.is_number()) return *node.value<double>();
+  const toml::array* items = node.as_array();
+  if (!items) return {};
+  std::vector<double> numbers;
+  for (const toml::node& item : *items) {
+    if (!item.is_number()) return {};
+    numbers.push_back(*item.value<double>());
+  }
+  return numbers;
+}
+
 struct Reader {
   const std::string& path;
   DaemonConfig* config;
@@ -52,24 +69,16 @@ struct Reader {
       Fail(node, fmt::format("unknown parameter '{}'{}", name, DidYouMean(name, names)));
     }
     const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(index)];
-    const std::string allowed =
-        fmt::format("{} ... {}{}{}", info.min, info.max, info.unit.empty() ? "" : " ", info.unit);
-    Vector3d value = Vector3d::Zero();
-    const auto read = [&](const toml::node& item, int i) {
-      const auto number = item.is_number() ? item.value<double>() : std::nullopt;
-      if (!number || !(*number >= info.min && *number <= info.max))
-        Fail(node, fmt::format("{} = {}: expected {}{}", name, Written(node),
-                               info.size == 1 ? "a number, " : "3 numbers, each ", allowed));
-      value[i] = *number;
-    };
-    if (info.size == 1) {
-      read(node, 0);
-    } else {
-      const toml::array* items = node.as_array();
-      if (!items || items->size() != 3)
-        Fail(node,
-             fmt::format("{} = {}: expected 3 numbers, each {}", name, Written(node), allowed));
-      for (int i = 0; i < 3; ++i) read((*items)[static_cast<std::size_t>(i)], i);
+    const std::optional<GivenValue> given = Given(node);
+    if (!given)
+      Fail(node, fmt::format("{} = {}: expected {}", name, Written(node), AllowedText(info)));
+    Vector3d value;
+    try {
+      value = ReadParameterValue(info, *given);
+    } catch (const ParameterError& e) {
+      Fail(node, fmt::format("{}; {}", e.what(),
+                             e.nearest.empty() ? "allowed: " + e.allowed
+                                               : fmt::format("did you mean '{}'?", e.nearest)));
     }
     config->parameters.emplace_back(name, value);
     config->origins["parameters." + name] = Place(node);
@@ -126,10 +135,10 @@ struct Reader {
   }
 };
 
-/// As TOML writes it; `value` points at `size` numbers.
-std::string Shown(const double* value, int size) {
-  return size == 1 ? fmt::format("{}", value[0])
-                   : fmt::format("[{}, {}, {}]", value[0], value[1], value[2]);
+/// As TOML writes it.
+std::string TomlText(const ParameterInfo& info, const Vector3d& value) {
+  const std::string text = ParameterText(info, value);
+  return info.type == ParameterType::kWord ? "\"" + text + "\"" : text;
 }
 
 Json Value(const ConfigKey& key, const DaemonConfig& config) {
@@ -183,10 +192,8 @@ std::string DefaultConfigText() {
       "# models unless they are set here.\n[parameters]\n";
   Parameters parameters;
   for (const ParameterInfo& info : ParameterTable()) {
-    const std::string unit = info.unit.empty() ? "" : fmt::format("[{}] ", info.unit);
-    text += fmt::format("# \"{}\" = {}  # {}{} {} ... {}\n", info.name,
-                        Shown(info.access(parameters), info.size), unit, info.description, info.min,
-                        info.max);
+    text += fmt::format("# \"{}\" = {}  # {} {}\n", info.name, TomlText(info, info.get(parameters)),
+                        info.meaning, AllowedText(info));
   }
   return text;
 }
@@ -207,13 +214,12 @@ std::string ConfigJson(const DaemonConfig& config) {
                     {"description", key.sentence}});
   Parameters built_in;
   for (const ParameterInfo& info : ParameterTable()) {
-    const double* value = info.access(built_in);
-    Vector3d shown(value[0], info.size == 3 ? value[1] : 0, info.size == 3 ? value[2] : 0);
+    Vector3d shown = info.get(built_in);
     for (const auto& [name, set] : config.parameters)
       if (name == info.name) shown = set;
     const std::string from = origin("parameters." + std::string(info.name), "");
     const bool of_model = info.name == "gravity" || info.name.starts_with("object.");
-    Json json = info.size == 1 ? Json(shown.x()) : Json{shown.x(), shown.y(), shown.z()};
+    Json json = ParameterValueJson(info, shown);
     if (from.empty() && of_model) json = nullptr;
     parameters.push_back({{"name", info.name},
                           {"value", std::move(json)},
@@ -222,7 +228,7 @@ std::string ConfigJson(const DaemonConfig& config) {
                                                    : "built in"},
                           {"unit", info.unit},
                           {"reload", true},
-                          {"description", info.description}});
+                          {"description", info.meaning}});
   }
   const Json file = config.file.empty() ? Json() : Json(config.file);
   return Json({{"file", file}, {"keys", std::move(keys)}, {"parameters", std::move(parameters)}})

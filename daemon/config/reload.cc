@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "daemon/wire/frame_json.h"
+
 namespace regrasp {
 namespace {
 
@@ -17,7 +19,7 @@ const Vector3d* Find(const DaemonConfig& config, const std::string& parameter) {
 
 ReloadCall SetParameterCall(const std::string& name, const Vector3d& value) {
   const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(FindParameter(name))];
-  const JsonIn json = info.size == 1 ? JsonIn(value.x()) : JsonIn{value.x(), value.y(), value.z()};
+  const JsonIn json = ParameterValueJson(info, value);
   return {
       "param.set", {{"name", name}, {"value", json}}, fmt::format("{} = {}", name, json.dump())};
 }

@@ -18,9 +18,7 @@ void CopyText(char (&target)[N], const char* text) {
 }  // namespace
 
 void SetParameter(Parameters* parameters, const Command& command) {
-  const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(command.parameter)];
-  double* target = info.access(*parameters);
-  for (int i = 0; i < info.size; ++i) target[i] = command.value[i];
+  ParameterTable()[static_cast<std::size_t>(command.parameter)].set(parameters, command.value);
 }
 
 Parameters ParametersAfterReset(Parameters parameters, const ObjectModel* new_object) {

@@ -81,9 +81,10 @@ void CheckValue(const ParamSpec& spec, const JsonIn& value, const NameLookup& na
       return CheckNumbers(spec, value, 3, false);
     case ParamType::kIntegerPair:
       return CheckNumbers(spec, value, 2, true);
-    case ParamType::kNumberOrVector3:
-      return value.is_array() ? CheckNumbers(spec, value, 3, false)
-                              : CheckNumber(spec, value, false);
+    case ParamType::kParameterValue:
+      if (!ToGivenValue(value))
+        Refuse(spec, fmt::format("{} = {}: expected {}", spec.name, Shown(value), Name(spec.type)));
+      return;
     case ParamType::kBool:
       if (!value.is_boolean())
         Refuse(spec, fmt::format("{} = {}: expected true or false", spec.name, Shown(value)));
@@ -97,6 +98,18 @@ void CheckValue(const ParamSpec& spec, const JsonIn& value, const NameLookup& na
 }
 
 }  // namespace
+
+std::optional<GivenValue> ToGivenValue(const JsonIn& json) {
+  const auto finite = [](const JsonIn& x) {
+    return x.is_number() && std::isfinite(x.get<double>());
+  };
+  if (json.is_boolean()) return json.get<bool>();
+  if (json.is_string()) return json.get<std::string>();
+  if (finite(json)) return json.get<double>();
+  if (json.is_array() && json.size() <= 3 && std::ranges::all_of(json, finite))
+    return json.get<std::vector<double>>();
+  return {};
+}
 
 std::string DidYouMean(std::string_view wanted, const std::vector<std::string>& names) {
   const std::string_view near = NearestName(wanted, names);
@@ -161,14 +174,10 @@ std::string Params::String(std::string_view name, const std::string& fallback) c
 Vector3d Params::Vector(std::string_view name, const Vector3d& fallback) const {
   const JsonIn* value = Find(name);
   if (!value) return fallback;
-  if (!value->is_array()) return Vector3d(value->get<double>(), 0, 0);
   return {(*value)[0].get<double>(), (*value)[1].get<double>(), (*value)[2].get<double>()};
 }
 
-int Params::Size(std::string_view name) const {
-  const JsonIn* value = Find(name);
-  return value && value->is_array() ? static_cast<int>(value->size()) : 1;
-}
+GivenValue Params::Given(std::string_view name) const { return *ToGivenValue(*Find(name)); }
 
 std::pair<int, int> Params::Pair(std::string_view name) const {
   const JsonIn& value = *Find(name);

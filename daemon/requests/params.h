@@ -3,11 +3,13 @@
 /// The parameters of one request, checked against the method table before any handler sees them.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/common/frames.h"
 #include "core/protocol/methods.h"
+#include "core/session/parameter_value.h"
 #include "daemon/wire/json.h"
 #include "daemon/wire/rpc.h"
 
@@ -27,16 +29,18 @@ class Params {
   std::int64_t Integer(std::string_view name, std::int64_t fallback) const;
   bool Bool(std::string_view name, bool fallback) const;
   std::string String(std::string_view name, const std::string& fallback = {}) const;
-  /// A kVector3 or kNumberOrVector3; the latter's single number comes as (x, 0, 0).
   Vector3d Vector(std::string_view name, const Vector3d& fallback = Vector3d::Zero()) const;
-  /// How many numbers were given: 1 or 3 for kNumberOrVector3.
-  int Size(std::string_view name) const;
+  /// A kParameterValue.
+  GivenValue Given(std::string_view name) const;
   std::pair<int, int> Pair(std::string_view name) const;
 
  private:
   const JsonIn* Find(std::string_view name) const;
   const JsonIn& values_;
 };
+
+/// True, false, a number, a word, or up to 3 numbers; anything else is not a parameter's value.
+std::optional<GivenValue> ToGivenValue(const JsonIn& json);
 
 /// "did you mean 'x'?", or "" when nothing is near.
 std::string DidYouMean(std::string_view wanted, const std::vector<std::string>& names);

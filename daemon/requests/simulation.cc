@@ -248,26 +248,19 @@ Outcome ParamGet(Service& service, const Params& params, Client&) {
 Outcome ParamSet(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kParameter);
   const int index = FindParameter(params.String("name"));
-  const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(index)];
-  const auto refuse = [&](std::string message) {
-    throw RpcException(RpcError{
-        ErrorCode::kInvalidParams,
-        std::move(message),
-        fmt::format("allowed: {}{} ... {}{}", info.size == 1 ? "" : "3 numbers, each ", info.min,
-                    info.max, info.unit.empty() ? "" : fmt::format(" {}", info.unit)),
-        "value",
-        {}});
-  };
-  const int given = params.Size("value");
-  if (given != info.size)
-    refuse(fmt::format("{} takes {} number{}, not {}", info.name, info.size,
-                       info.size == 1 ? "" : "s", given));
   Command command = Of(CommandType::kParameter);
   command.parameter = index;
-  command.value = params.Vector("value");
-  for (int i = 0; i < info.size; ++i)
-    if (command.value[i] < info.min || command.value[i] > info.max)
-      refuse(fmt::format("{} = {} is out of range", info.name, command.value[i]));
+  try {
+    command.value = ReadParameterValue(ParameterTable()[static_cast<std::size_t>(index)],
+                                       params.Given("value"));
+  } catch (const ParameterError& e) {
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                e.what(),
+                                e.nearest.empty() ? fmt::format("allowed: {}", e.allowed)
+                                                  : fmt::format("did you mean '{}'?", e.nearest),
+                                "value",
+                                {}});
+  }
   const std::uint64_t barrier = service.PostCommand(command);
   SetParameter(&service.accepted.parameters, command);
   return {.result = ParamEntry(service, index), .barrier = barrier};

@@ -51,7 +51,7 @@ double HullVolume(const Frame& frame, const Parameters& parameters) {
 }
 
 std::string_view MeasureName(const Parameters& parameters) {
-  switch (static_cast<StabilityMeasure>(static_cast<int>(parameters.control.stability_measure))) {
+  switch (parameters.control.stability_measure) {
     case StabilityMeasure::kMinSingularValue:
       return "min_singular_value";
     case StabilityMeasure::kEpsilon:
@@ -261,15 +261,32 @@ Json JobJson(const JobRecord& job, const HandModel& hand) {
   return json;
 }
 
-Json ParameterJson(const ParameterInfo& info, Parameters& parameters) {
-  const double* value = info.access(parameters);
+Json ParameterValueJson(const ParameterInfo& info, const Vector3d& value) {
+  switch (info.type) {
+    case ParameterType::kReal:
+      return value.x();
+    case ParameterType::kInteger:
+      return static_cast<std::int64_t>(value.x());
+    case ParameterType::kBoolean:
+      return value.x() != 0;
+    case ParameterType::kWord:
+      return info.words[static_cast<std::size_t>(value.x())];
+    case ParameterType::kVector:
+      return Vector(value);
+  }
+  return {};
+}
+
+Json ParameterJson(const ParameterInfo& info, const Parameters& parameters) {
   return {{"name", info.name},
-          {"value", info.size == 1 ? Json(value[0]) : Json{value[0], value[1], value[2]}},
+          {"value", ParameterValueJson(info, info.get(parameters))},
+          {"type", Name(info.type)},
           {"unit", info.unit},
           {"min", info.min},
           {"max", info.max},
-          {"size", info.size},
-          {"description", info.description},
+          {"words", info.words},
+          {"size", info.size()},
+          {"description", info.meaning},
           {"source", info.source}};
 }
 

@@ -26,7 +26,9 @@ Json EventJson(const Event& event, const HandModel& hand, double dt);
 Json NoiseJson(const NoiseLevels& levels);
 /// One job record, with the fields of its method at the top level.
 Json JobJson(const JobRecord& job, const HandModel& hand);
+/// A parameter's value as `param.set` takes it: a number, three, true, false or a word.
+Json ParameterValueJson(const ParameterInfo& info, const Vector3d& value);
 /// One row of the parameter table with its value.
-Json ParameterJson(const ParameterInfo& info, Parameters& parameters);
+Json ParameterJson(const ParameterInfo& info, const Parameters& parameters);
 
 }  // namespace regrasp

@@ -79,7 +79,7 @@ TEST_F(StateEstimatorTest, FiltersReduceTheVarianceAsTheirTimeConstantsSay) {
 
 TEST_F(StateEstimatorTest, AFreshContactStartsUnbiased) {
   ControlParameters parameters;
-  parameters.contact_from_normal = 0;
+  parameters.contact_from_normal = false;
   StateEstimator estimator(hand_, kDt);
   SensorReading reading = TouchingReading(hand_, q_, 1.0);
   const SensorReading touching = reading;
@@ -111,7 +111,7 @@ TEST_F(StateEstimatorTest, ALostContactPointTravelsWithTheFingertip) {
 
 TEST_F(StateEstimatorTest, ContactFromNormalLiesOnTheFingertip) {
   ControlParameters parameters = UnfilteredParameters();
-  parameters.contact_from_normal = 1;
+  parameters.contact_from_normal = true;
   StateEstimator estimator(hand_, kDt);
   RandomStream random(3, 0);
   const SensorReading clean = TouchingReading(hand_, q_, 1.0);

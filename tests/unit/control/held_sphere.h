@@ -36,7 +36,7 @@ inline SensorReading TouchingReading(const HandModel& hand, const JointVector& q
 inline ControlParameters UnfilteredParameters() {
   ControlParameters p;
   p.joint_filter_s = p.force_filter_s = p.contact_filter_s = p.pose_filter_s = 0;
-  p.contact_from_normal = 0;
+  p.contact_from_normal = false;
   return p;
 }
 

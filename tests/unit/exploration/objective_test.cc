@@ -39,7 +39,7 @@ TEST_F(ObjectiveTest, StabilityMeasureIsSelectable) {
   const SingularMeasures m =
       ComputeSingularMeasures({grasp.data(), grasp.size()}, estimate_.object_scale);
   const auto With = [&](StabilityMeasure measure) {
-    parameters_.stability_measure = static_cast<double>(measure);
+    parameters_.stability_measure = measure;
     return GraspStability(estimate_, kAll, parameters_);
   };
   EXPECT_EQ(With(StabilityMeasure::kMinSingularValue), m.min_singular_value);

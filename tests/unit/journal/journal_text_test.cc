@@ -40,11 +40,45 @@ TEST(JournalText, AConfigurationGivesTheSameSession) {
   }
 }
 
+/// Converts to a member of any scalar type: T{Any(), ...} with as many of them as T has members is
+/// the longest that compiles.
+struct Any {
+  template <typename T>
+  requires std::is_scalar_v<T>
+  operator T() const;
+};
+template <typename T, typename... Members>
+constexpr int CountMembers() {
+  if constexpr (requires { T{Members()..., Any()}; })
+    return CountMembers<T, Members..., Any>();
+  else
+    return sizeof...(Members);
+}
+
 // A member that is not in the parameter table would be lost.
 TEST(JournalText, TheParameterTableHoldsEveryParameter) {
-  int numbers = 0;
-  for (const ParameterInfo& info : ParameterTable()) numbers += info.size;
-  EXPECT_EQ(sizeof(Parameters), static_cast<std::size_t>(numbers) * sizeof(double));
+  constexpr int kMembers = CountMembers<ObjectParameters>() + CountMembers<StartParameters>() +
+                           CountMembers<ControlParameters>() +
+                           CountMembers<ExplorationParameters>() + CountMembers<GaitParameters>();
+  constexpr int kGravity = 1;
+  EXPECT_EQ(ParameterTable().size(), static_cast<std::size_t>(kMembers + kGravity));
+}
+
+TEST(JournalText, WordsAndBooleansAreReadAsNumbersToo) {
+  SessionConfig config = Config("sphere");
+  config.parameters.gait.mode = GaitMode::kExploring;
+  config.parameters.gait.hop = false;
+  std::string text = ConfigText(config, 0);
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace(R"("gait.mode":"exploring")", R"("gait.mode":[0.0])");
+  replace(R"("gait.hop":false)", R"("gait.hop":[0.0])");
+  EXPECT_EQ(ConfigText(ParseConfig(text).config, 0), ConfigText(config, 0));
+  replace(R"("gait.mode":[0.0])", R"("gait.mode":"explorin")");
+  EXPECT_THROW(ParseConfig(text), JournalError);
 }
 
 TEST(JournalText, EveryCommandComesBack) {
