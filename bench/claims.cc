@@ -37,10 +37,9 @@ namespace {
 struct Options {
   std::string what, noise = "paper", object, criterion = "manipulability",
                     estimator = "least_squares", finger;
-  int seeds = 5, jobs = 2, iterations = 0;
+  int seeds = 5, jobs = 2;
   std::uint64_t first = 1;
-  double seconds = 60, warm = -1, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0,
-         offset_mm = 0;
+  double seconds = 60, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0, offset_mm = 0;
   std::string axis = "0,0,-1";
   bool exact = false, rows = false, exploring = false;
   std::vector<std::pair<std::string, double>> set;
@@ -54,8 +53,6 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
-  if (o.iterations > 0) config.world.iterations = o.iterations;
-  if (o.warm >= 0) config.world.contact_warm_start = o.warm;
   if (o.exact) config.world.stepper = Stepper::kExact;
   if (o.tilt >= 0) {
     const double t = o.tilt * M_PI / 180;
@@ -655,10 +652,6 @@ int Main(int argc, char** argv) {
       o.jobs = std::stoi(next());
     else if (a == "--exact")
       o.exact = true;
-    else if (a == "--iterations")
-      o.iterations = std::stoi(next());
-    else if (a == "--warm")
-      o.warm = std::stod(next());
     else if (a == "--rows")
       o.rows = true;
     else if (a == "--set") {

@@ -25,14 +25,13 @@ template <typename A>
 void Fields(A& a, WorldConfig& w) {
   a("dt_s", w.dt);
   a("stepper", w.stepper);
-  a("iterations", w.iterations);
+  a("contact_max_sweeps", w.contact_solver.max_sweeps);
+  a("contact_direct_solutions", w.contact_solver.direct_solutions);
+  a("contact_tolerance_n", w.contact_solver.tolerance);
   a("contact_stiffness_n_m", w.contact_stiffness);
   a("contact_damping_n_s_m", w.contact_damping);
-  a("over_relaxation", w.over_relaxation);
   a("joint_erp", w.joint_erp);
   a("joint_cfm", w.joint_cfm);
-  a("warm_start", w.warm_start);
-  a("contact_warm_start", w.contact_warm_start);
   a("merge_universal", w.merge_universal);
 }
 

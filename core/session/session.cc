@@ -35,7 +35,7 @@ Session::Impl::Impl(SessionConfig c)
       seed(config.seed),
       parameters(config.parameters),
       noise(config.noise),
-      world(hand, config.model.object, config.world, start.q_open, start.X_WO, seed),
+      world(hand, config.model.object, config.world, start.q_open, start.X_WO),
       sensors(hand, dt, seed),
       estimator(hand, dt),
       judge(hand, dt),

@@ -222,7 +222,7 @@ void Collider::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
     const Part &a = parts_[pair.a], &b = parts_[pair.b];
     if (!MayTouch(a, b)) continue;
     const int n = Contacts(a, b, found);
-    for (int k = 0; k < n; ++k) link_hits->push_back({a.body, b.body, found[k]});
+    for (int k = 0; k < n; ++k) link_hits->push_back({a.link, b.link, a.body, b.body, found[k]});
   }
 }
 

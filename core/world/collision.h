@@ -28,6 +28,7 @@ struct ObjectHit {
 
 /// A contact between two links.
 struct LinkHit {
+  int link_a = -1, link_b = -1;
   dBodyID body_a = nullptr, body_b = nullptr;
   dContactGeom geom{};
 };

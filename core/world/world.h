@@ -15,26 +15,23 @@
 #include "core/common/limits.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/object_model.h"
+#include "core/world/contact_solver.h"
 
 namespace regrasp {
 
 enum class Stepper {
-  kFast,   ///< dWorldQuickStep, seeded
+  kFast,   ///< the same equations in joint coordinates (fast_step.h)
   kExact,  ///< dWorldStep: the reference
 };
 
 struct WorldConfig {
   double dt = 1e-3;  ///< step [s]
   Stepper stepper = Stepper::kFast;
-  int iterations = 12;              ///< QuickStep iterations, at least 10 (why: docs/world.md)
-  double contact_stiffness = 4000;  ///< [N/m]
-  double contact_damping = 8;       ///< [N s/m]
-  double over_relaxation = 1.3;     ///< QuickStep's SOR parameter
-  double joint_erp = 0.5;           ///< share of a joint's position error removed per step
-  double joint_cfm = 1e-10;         ///< ODE's softness of the joint and friction rows [m/(N s)]
-  double warm_start = 1.0;  ///< QuickStep: share of the last joint forces to start from, 0 to 1
-  double contact_warm_start =
-      0.98;  ///< QuickStep: share of a contact's last force to start from, 0 to 0.98
+  ContactSolverLimits contact_solver;  ///< fast step
+  double contact_stiffness = 4000;     ///< [N/m]
+  double contact_damping = 8;          ///< [N s/m]
+  double joint_erp = 0.5;    ///< exact: share of a joint's position error removed per step
+  double joint_cfm = 1e-10;  ///< ODE's softness of the joint and friction rows [m/(N s)]
   bool merge_universal =
       true;  ///< perpendicular joint pairs sharing an anchor become one universal joint
 };
@@ -67,9 +64,8 @@ enum class StepStatus { kOk, kFault };
 class World {
  public:
   /// Builds the world at rest: joints at `q0` [rad], the object at `X_WO0`, in the stand-in's hold.
-  /// `seed` seeds QuickStep's row reordering.
   World(const HandModel& hand, const ObjectModel& object, const WorldConfig& config,
-        const JointVector& q0, const Isometry3d& X_WO0, std::uint64_t seed);
+        const JointVector& q0, const Isometry3d& X_WO0);
   ~World();
   World(const World&) = delete;
   World& operator=(const World&) = delete;

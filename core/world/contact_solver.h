@@ -1,0 +1,163 @@
+#pragma once
+
+/// The forces of soft contacts with dry friction. For the rows r of a linear map A from forces to
+/// velocities, find f with
+///
+///   normal:    (A f + rate + softness f)_r = 0 and f_r >= 0, or f_r = 0 where the left side is >
+///   0, friction:  the same and |f_r| <= mu f_normal(r), or f_r at the bound that opposes the
+///   motion.
+///
+/// These are the equations of ODE's contact joints: a spring and damper along the normal, the
+/// friction pyramid across it.
+///
+/// Method: projected Gauss-Seidel in turn with direct solutions for the rows that are not at a
+/// bound [Silcowitz, Niebe, Erleben, "Projected Gauss-Seidel subspace minimization method for
+/// interactive rigid body dynamics", GRAPP 2010]. Started from the last step's forces the first
+/// direct solution is nearly always the answer, and one sweep shows it.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace regrasp {
+
+struct ContactSolverLimits {
+  int max_sweeps = 200;      ///< 1 to 10000
+  double tolerance = 1e-8;   ///< largest change of a force in the last sweep [N], > 0
+  int direct_solutions = 4;  ///< at most so many, 0 to 100
+};
+
+template <int kMaxRows>
+class ContactSolver {
+ public:
+  /// Starts a problem with `rows` rows; the matrix and the vectors are the caller's to fill.
+  void Resize(int rows) {
+    A.resize(rows, rows);
+    rate.resize(rows);
+    force.resize(rows);
+    softness.resize(rows);
+    normal.resize(rows);
+  }
+  int rows() const { return static_cast<int>(rate.size()); }
+
+  /// Starts from the forces in `force`. Returns the sweeps it took.
+  int Solve(double friction, const ContactSolverLimits& limits) {
+    for (int r = 0; r < rows(); ++r) inverse_[r] = 1.0 / (A(r, r) + softness[r]);
+    int sweeps = 0;
+    bool settled = rows() == 0;
+    for (int direct = 0; !settled && sweeps < limits.max_sweeps; ++sweeps) {
+      if (direct < limits.direct_solutions && SolveDirectly(friction)) ++direct;
+      settled = !(Sweep(friction) > limits.tolerance);
+    }
+    return sweeps;
+  }
+
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
+  Matrix A;         ///< symmetric [m/(N s)]: velocity along a row per force along another
+  Vector rate;      ///< velocity without the forces, minus the wanted one [m/s]
+  Vector force;     ///< in: a guess; out: the solution [N]
+  Vector softness;  ///< ODE's cfm [m/(N s)]
+  Eigen::Matrix<int, Eigen::Dynamic, 1, 0, kMaxRows, 1> normal;  ///< friction: its normal row; -1
+
+ private:
+  static constexpr int kMaxDirect = 24;        // rows; beyond, sweeps are cheaper
+  static constexpr double kAtBound = 0.999;    // of the friction bound: taken to be at it
+  static constexpr double kLeastPivot = 1e-6;  // of the largest diagonal: rows are independent
+
+  /// One sweep; returns the largest change of a force [N].
+  double Sweep(double friction) {
+    const int n = rows();
+    double change = 0;
+    for (int r = 0; r < n; ++r) {
+      const double before = force[r];
+      double residual = rate[r] + softness[r] * before;
+      const double* a = A.data() + static_cast<std::ptrdiff_t>(r) * n;
+      for (int s = 0; s < n; ++s) residual += a[s] * force[s];
+      double now = before - residual * inverse_[r];
+      if (normal[r] < 0) {
+        now = now > 0 ? now : 0;
+      } else {
+        const double bound = friction * force[normal[r]];
+        now = now > bound ? bound : now < -bound ? -bound : now;
+      }
+      force[r] = now;
+      change = std::max(change, std::abs(now - before));
+    }
+    return change;
+  }
+
+  /// Solves for the rows that the present forces show to be free, with friction at its bound
+  /// following the normal force. False, and nothing changed, where that is not possible.
+  bool SolveDirectly(double friction) {
+    int free = 0;
+    for (int r = 0; r < rows(); ++r) {
+      position_[r] = -1;
+      slip_[r] = 0;
+      if (normal[r] < 0) {
+        if (!(force[r] > 0)) continue;
+      } else {
+        const double bound = friction * force[normal[r]];
+        if (!(bound > 0)) continue;
+        if (std::abs(force[r]) >= kAtBound * bound) {
+          slip_[r] = force[r] > 0 ? friction : -friction;
+          continue;
+        }
+      }
+      if (free == kMaxDirect) return false;
+      position_[r] = free;
+      row_of_[free++] = r;
+    }
+    if (free == 0) return false;
+    for (int i = 0; i < free; ++i) {
+      const int r = row_of_[i];
+      for (int j = 0; j < free; ++j) system_[i][j] = A(r, row_of_[j]);
+      system_[i][i] += softness[r];
+      system_[i][free] = -rate[r];
+      for (int t = 0; t < rows(); ++t)
+        if (slip_[t] != 0) system_[i][position_[normal[t]]] += slip_[t] * A(r, t);
+    }
+    if (!Eliminate(free)) return false;
+    for (int r = 0; r < rows(); ++r)
+      force[r] = position_[r] >= 0 ? system_[position_[r]][free] : 0.0;
+    for (int r = 0; r < rows(); ++r)
+      if (slip_[r] != 0) force[r] = slip_[r] * force[normal[r]];
+    return true;
+  }
+
+  /// Gauss elimination with row exchange of the first n rows of system_, right side in column n.
+  bool Eliminate(int n) {
+    double largest = 0;
+    for (int k = 0; k < n; ++k) largest = std::max(largest, std::abs(system_[k][k]));
+    const double least = kLeastPivot * largest;
+    for (int k = 0; k < n; ++k) {
+      int best = k;
+      for (int i = k + 1; i < n; ++i)
+        if (std::abs(system_[i][k]) > std::abs(system_[best][k])) best = i;
+      if (best != k) std::swap(system_[best], system_[k]);
+      const double pivot = system_[k][k];
+      if (!(std::abs(pivot) > least)) return false;
+      const double scale = 1.0 / pivot;
+      for (int i = k + 1; i < n; ++i) {
+        const double factor = system_[i][k] * scale;
+        if (factor == 0) continue;
+        for (int j = k + 1; j <= n; ++j) system_[i][j] -= factor * system_[k][j];
+      }
+    }
+    for (int k = n - 1; k >= 0; --k) {
+      double sum = system_[k][n];
+      for (int j = k + 1; j < n; ++j) sum -= system_[k][j] * system_[j][n];
+      system_[k][n] = sum / system_[k][k];
+    }
+    return true;
+  }
+
+  std::array<double, kMaxRows> inverse_, slip_;
+  std::array<int, kMaxRows> position_;
+  std::array<int, kMaxDirect> row_of_;
+  std::array<std::array<double, kMaxDirect + 1>, kMaxDirect> system_;
+};
+
+}  // namespace regrasp

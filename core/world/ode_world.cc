@@ -1,0 +1,250 @@
+#include "core/world/ode_world.h"
+
+#include <algorithm>
+
+#include "core/world/ode_guard.h"
+
+namespace regrasp {
+namespace {
+
+Vector3d ToVector(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+Matrix3d ToMatrix(const dReal* R) {
+  Matrix3d M;
+  M << R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10];
+  return M;
+}
+
+void SetPose(dBodyID body, const Matrix3d& R_WB, const Vector3d& p_WB) {
+  dMatrix3 R;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) R[4 * r + c] = c < 3 ? R_WB(r, c) : 0.0;
+  dBodySetRotation(body, R);
+  dBodySetPosition(body, p_WB.x(), p_WB.y(), p_WB.z());
+}
+
+void SetMassOf(dBodyID body, double mass, const Matrix3d& I) {
+  dMass m;
+  dMassSetParameters(&m, mass, 0, 0, 0, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2));
+  dBodySetMass(body, &m);
+}
+
+}  // namespace
+
+OdeWorld::OdeWorld(const HandModel& hand, const Articulation& articulation,
+                   const ObjectModel& object, const WorldConfig& config, const JointVector& q0,
+                   const Isometry3d& X_WO0)
+    : hand_(hand), articulation_(articulation), object_(object), config_(config) {
+  EnsureOde();
+  world_ = dWorldCreate();
+  dWorldSetERP(world_, config.joint_erp);
+  dWorldSetCFM(world_, config.joint_cfm);
+  dWorldSetContactMaxCorrectingVel(world_, dInfinity);
+  dWorldSetAutoDisableFlag(world_, 0);
+  if (config.stepper == Stepper::kExact) {
+    // Room for every step there will be, so that no step allocates: the exact step needs the square
+    // of the number of rows (300 rows with every contact there can be).
+    dWorldStepReserveInfo reserve{};
+    reserve.struct_size = sizeof(reserve);
+    reserve.reserve_factor = 1.5f;
+    reserve.reserve_minimum = 4u << 20;
+    dWorldSetStepMemoryReservationPolicy(world_, &reserve);
+  }
+  contact_group_ = dJointGroupCreate(0);
+  BuildHand(q0);
+  BuildObject(X_WO0);
+}
+
+OdeWorld::~OdeWorld() {
+  // Destroying a world that ODE has given up on fails again: leave it behind.
+  if (!world_) return;
+  collider_.reset();
+  dJointGroupDestroy(contact_group_);
+  dWorldDestroy(world_);
+}
+
+void OdeWorld::Abandon() {
+  world_ = nullptr;
+  collider_->Abandon();
+}
+
+void OdeWorld::BuildHand(const JointVector& q0) {
+  KinematicsData kinematics;
+  ForwardKinematics(hand_, q0, &kinematics);
+  std::vector<Isometry3d> X_WL(kinematics.X_WL.begin(),
+                               kinematics.X_WL.begin() + static_cast<int>(hand_.links.size()));
+  for (const BodyPlan& plan : articulation_.bodies) {
+    dBodyID body = dBodyCreate(world_);
+    SetMassOf(body, plan.mass, plan.I_B);
+    // Gyroscopic torque of a link is below 1e-5 N m at 1 rad/s, and rotors do not add to it.
+    dBodySetGyroscopicMode(body, 0);
+    SetPose(body, X_WL[plan.link].linear(), X_WL[plan.link] * plan.p_LB);
+    bodies_.push_back(body);
+  }
+  for (const JointPlan& plan : articulation_.joints) {
+    const int parent = articulation_.bodies[plan.body].parent;
+    const dBodyID parent_body = parent >= 0 ? bodies_[parent] : nullptr;
+    const Vector3d p = kinematics.p_WJ[plan.first];
+    const Vector3d u = kinematics.axis_W[plan.first];
+    dJointID joint = nullptr;
+    if (plan.second < 0) {
+      joint = dJointCreateHinge(world_, nullptr);
+      dJointAttach(joint, bodies_[plan.body], parent_body);
+      dJointSetHingeAnchor(joint, p.x(), p.y(), p.z());
+      dJointSetHingeAxis(joint, u.x(), u.y(), u.z());
+    } else {
+      const Vector3d u2 = kinematics.axis_W[plan.second];
+      joint = dJointCreateUniversal(world_, nullptr);
+      dJointAttach(joint, parent_body, bodies_[plan.body]);
+      dJointSetUniversalAnchor(joint, p.x(), p.y(), p.z());
+      dJointSetUniversalAxis1(joint, u.x(), u.y(), u.z());
+      dJointSetUniversalAxis2(joint, u2.x(), u2.y(), u2.z());
+    }
+    joints_.push_back(joint);
+  }
+  object_body_ = dBodyCreate(world_);
+  collider_ =
+      std::make_unique<Collider>(hand_, articulation_, object_, bodies_, X_WL, object_body_);
+}
+
+void OdeWorld::BuildObject(const Isometry3d& X_WO0) {
+  SetPose(object_body_, X_WO0.linear(), X_WO0.translation());
+  mass_ = object_.mass;
+  SetMassOf(object_body_, mass_, object_.I_OCom);
+  stand_in_joint_ = dJointCreateFixed(world_, nullptr);
+}
+
+void OdeWorld::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
+                       FixedVector<LinkHit, kMaxLinkHits>* link_hits) {
+  EnsureOde();
+  collider_->Collide(object_hits, link_hits);
+}
+
+void OdeWorld::SetPoses(const KinematicsData& links, const WorldState& object) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const BodyPlan& plan = articulation_.bodies[b];
+    const Isometry3d& X_WL = links.X_WL[plan.link];
+    SetPose(bodies_[b], X_WL.linear(), X_WL * plan.p_LB);
+  }
+  SetPose(object_body_, object.q_WO.toRotationMatrix(), object.p_WO);
+}
+
+Matrix3d OdeWorld::LinkRotation(int link) const {
+  const int b = articulation_.body_of_link[link];
+  return b >= 0 ? ToMatrix(dBodyGetRotation(bodies_[b])) : Matrix3d::Identity();
+}
+
+Vector3d OdeWorld::LinkAngularVelocity(int link) const {
+  const int b = articulation_.body_of_link[link];
+  return b >= 0 ? ToVector(dBodyGetAngularVel(bodies_[b])) : Vector3d::Zero();
+}
+
+void OdeWorld::ApplyLoad(const Load& load) {
+  dWorldSetGravity(world_, load.gravity_W.x(), load.gravity_W.y(), load.gravity_W.z());
+  if (mass_ != load.mass) {
+    mass_ = load.mass;
+    SetMassOf(object_body_, mass_, object_.I_OCom * (mass_ / object_.mass));
+  }
+  if (load.held != held_) {
+    dJointAttach(stand_in_joint_, load.held ? object_body_ : nullptr, nullptr);
+    if (load.held) dJointSetFixed(stand_in_joint_);
+    held_ = load.held;
+  }
+  dBodyAddForce(object_body_, load.push_W.x(), load.push_W.y(), load.push_W.z());
+  for (const JointPlan& joint : articulation_.joints) {
+    const Matrix3d R_WP = LinkRotation(joint.parent_link);
+    Vector3d T = load.torque[joint.first] * (R_WP * (joint.R_PJ * joint.axis1_J));
+    const dBodyID body = bodies_[joint.body];
+    if (joint.second >= 0)
+      T += load.torque[joint.second] * (ToMatrix(dBodyGetRotation(body)) * joint.axis2_L);
+    dBodyAddTorque(body, T.x(), T.y(), T.z());
+    const int parent = articulation_.bodies[joint.body].parent;
+    if (parent >= 0) dBodyAddTorque(bodies_[parent], -T.x(), -T.y(), -T.z());
+  }
+}
+
+void OdeWorld::MakeContacts(const FixedVector<ObjectHit, kMaxObjectContacts>& hits,
+                            const FixedVector<LinkHit, kMaxLinkHits>& link_hits, double friction) {
+  dJointGroupEmpty(contact_group_);
+  const double hk = config_.dt * config_.contact_stiffness;
+  dContact contact{};
+  contact.surface.mode = dContactSoftERP | dContactSoftCFM | dContactApprox1;
+  contact.surface.soft_erp = hk / (hk + config_.contact_damping);
+  contact.surface.soft_cfm = 1.0 / (hk + config_.contact_damping);
+  contact.surface.mu = friction;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    contact.geom = hits[i].geom;
+    const dJointID joint = dJointCreateContact(world_, contact_group_, &contact);
+    dJointAttach(joint, object_body_, hits[i].body);
+    feedback_[i] = dJointFeedback{};
+    dJointSetFeedback(joint, &feedback_[i]);
+  }
+  // Links slide on each other without friction: one row in place of three.
+  contact.surface.mu = 0;
+  for (const LinkHit& hit : link_hits) {
+    contact.geom = hit.geom;
+    const dJointID joint = dJointCreateContact(world_, contact_group_, &contact);
+    dJointAttach(joint, hit.body_a, hit.body_b);
+  }
+}
+
+void OdeWorld::Step(const Load& load, const FixedVector<ObjectHit, kMaxObjectContacts>& hits,
+                    const FixedVector<LinkHit, kMaxLinkHits>& link_hits, WorldState* state) {
+  ApplyLoad(load);
+  MakeContacts(hits, link_hits, load.friction);
+  dWorldStep(world_, config_.dt);
+  Read(state);
+  for (std::size_t i = 0; i < hits.size(); ++i)
+    state->contacts[i].force_W = ToVector(feedback_[i].f1);
+}
+
+void OdeWorld::Read(WorldState* state) const {
+  for (const JointPlan& joint : articulation_.joints) {
+    const dBodyID body = bodies_[joint.body];
+    const Matrix3d R_WP = LinkRotation(joint.parent_link);
+    const Matrix3d R_WL = ToMatrix(dBodyGetRotation(body));
+    const Vector3d w_W =
+        ToVector(dBodyGetAngularVel(body)) - LinkAngularVelocity(joint.parent_link);
+    double q2 = 0;
+    JointAngles(joint, R_WP.transpose() * R_WL, &state->q[joint.first], &q2);
+    state->qdot[joint.first] = w_W.dot(R_WP * (joint.R_PJ * joint.axis1_J));
+    if (joint.second < 0) continue;
+    state->q[joint.second] = q2;
+    state->qdot[joint.second] = w_W.dot(R_WL * joint.axis2_L);
+  }
+  state->p_WO = ToVector(dBodyGetPosition(object_body_));
+  const dReal* q = dBodyGetQuaternion(object_body_);
+  state->q_WO = Quaterniond(q[0], q[1], q[2], q[3]);
+  state->v_WO = ToVector(dBodyGetLinearVel(object_body_));
+  state->w_WO = ToVector(dBodyGetAngularVel(object_body_));
+}
+
+double OdeWorld::JointDrift() const {
+  double largest = 0;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    dVector3 p1, p2;
+    if (articulation_.joints[i].second < 0) {
+      dJointGetHingeAnchor(joints_[i], p1);
+      dJointGetHingeAnchor2(joints_[i], p2);
+    } else {
+      dJointGetUniversalAnchor(joints_[i], p1);
+      dJointGetUniversalAnchor2(joints_[i], p2);
+    }
+    largest = std::max(largest, (ToVector(p1) - ToVector(p2)).norm());
+  }
+  return largest;
+}
+
+void OdeWorld::AddTo(StateHasher* hasher) const {
+  const auto add_body = [&](dBodyID body) {
+    hasher->Add(ToVector(dBodyGetPosition(body)));
+    const dReal* q = dBodyGetQuaternion(body);
+    for (int k = 0; k < 4; ++k) hasher->Add(q[k]);
+    hasher->Add(ToVector(dBodyGetLinearVel(body)));
+    hasher->Add(ToVector(dBodyGetAngularVel(body)));
+  };
+  for (dBodyID body : bodies_) add_body(body);
+  add_body(object_body_);
+}
+
+}  // namespace regrasp
