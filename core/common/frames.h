@@ -40,6 +40,12 @@ inline Matrix3d RotationFromZ(const Vector3d& z) {
 /// The part of `v` tangent to the surface with unit normal `n`: P v with P = I - n nᵀ.
 inline Vector3d TangentPart(const Vector3d& v, const Vector3d& n) { return v - n * n.dot(v); }
 
+/// `v`, shortened to this norm if it is longer.
+inline Vector3d LimitNorm(const Vector3d& v, double limit) {
+  const double norm = v.norm();
+  return norm > limit ? Vector3d(v * (limit / norm)) : v;
+}
+
 /// Rotation vector (axis * angle, [rad]) of a rotation, angle in [0, pi].
 inline Vector3d RotationVector(const Quaterniond& q_in) {
   Quaterniond q = q_in;

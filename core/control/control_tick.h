@@ -4,7 +4,9 @@
 /// struct, made once a tick, so that the layers of the controller (grasp, exploration, gait) take
 /// the same few arguments.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/common/finger_set.h"
 #include "core/control/control_parameters.h"
@@ -22,6 +24,11 @@ struct LoadMargins {
   double all = 0;                             ///< with all fingers of the grasp
   std::array<double, kMaxFingers> without{};  ///< without one finger, by finger
 };
+
+/// A time as a number of ticks of `dt` [s]: the nearest, at least one.
+inline int Ticks(double seconds, double dt) {
+  return std::max(1, static_cast<int>(std::lround(seconds / dt)));
+}
 
 /// References to what one tick works on; valid during that tick only.
 struct ControlTick {

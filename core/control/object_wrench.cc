@@ -1,15 +1,6 @@
 #include "core/control/object_wrench.h"
 
 namespace regrasp {
-namespace {
-
-Vector3d LimitNorm(const Vector3d& v, double limit) {
-  const double norm = v.norm();
-  return norm > limit ? Vector3d(v * (limit / norm)) : v;
-}
-
-}  // namespace
-
 void ObjectWrench::Start(const Estimate& estimate, const Vector3d& gravity_W,
                          const ControlParameters& parameters) {
   p_ref_ = estimate.p_WO;

@@ -16,10 +16,9 @@ class BestContact {
     p_WC_ = p_WC_best_ = p_WC;
     phi_ = phi_best_ = phi;
   }
-  /// One tick of `dt` [s].
-  void Add(const Vector3d& p_WC, double phi, double dt) {
-    constexpr double kFilter_s = 0.15;
-    const double gain = dt / (kFilter_s + dt);
+  /// One tick of `dt` [s]. `filter_s`: time constant of the low pass [s].
+  void Add(const Vector3d& p_WC, double phi, double filter_s, double dt) {
+    const double gain = dt / (filter_s + dt);
     phi_ += gain * (phi - phi_);
     p_WC_ += gain * (p_WC - p_WC_);
     if (phi_ <= phi_best_) return;
@@ -28,8 +27,8 @@ class BestContact {
   }
   const Vector3d& p_WC() const { return p_WC_best_; }  ///< [m]
   double phi() const { return phi_best_; }
-  /// Whether the way back pays: the best phi is more than 0.2 % above the present one.
-  bool worth_returning() const { return phi_best_ > 1.002 * phi_; }
+  /// Whether the way back pays: the best phi is more than `gain` times the present one.
+  bool worth_returning(double gain) const { return phi_best_ > gain * phi_; }
   void AddTo(StateHasher* hasher) const {
     hasher->Add(p_WC_);
     hasher->Add(phi_);

@@ -41,6 +41,23 @@ struct ExplorationParameters {
   double stability_weight = 1.0;  ///< combined: weight of stability in the linear sum
   double transfer_s =
       0.25;  ///< load transfer before the finger starts to slide, and after it ends [s]
+  // The slide around Algorithm 1 (guided_slide.h); what differs within a gait is a gait parameter.
+  double settle_s = 0.15;       ///< rest after load transfer, until the filters follow
+  double force_share = 0.5;     ///< normal force per load margin without the finger ...
+  double least_force = 0.5;     ///< ... from this share of normal_force up to all of it
+  double lost_contact_s = 0.3;  ///< contact is lost after so long without a reading of it
+  double object_slow = 0.002;   ///< the finger slows down beyond this error of the object [m] ...
+  double object_stop = 0.003;   ///< ... waits beyond this one [m] ...
+  double object_wait_s = 0.3;   ///< ... and gives up after so long
+  int tries = 3;                ///< of Algorithm 1, while N_max allows it and
+  double little_gain = 1.02;    ///< ... the best phi is below so much of the first one
+  double best_filter_s = 0.15;  ///< low pass on phi and contact point before they count as best
+  double worth_returning = 1.002;  ///< a best phi of so much of the last one is returned to
+  double return_gain = 8.0;        ///< of the way back: speed per distance [1/s]
+  double arrived = 0.0002;         ///< ... which ends this near [m]
+  double return_limit_s = 2.5;     ///< ... or after so long
+  double disc_slack = 0.0005;      ///< a best contact may be so far beyond the gait's disc [m]
+  double reload_limit_s = 1.0;     ///< no surface to stand on after so long without contact
 };
 
 }  // namespace regrasp

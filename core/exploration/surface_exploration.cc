@@ -7,11 +7,6 @@
 namespace regrasp {
 namespace {
 
-Vector3d LimitNorm(const Vector3d& v, double limit) {
-  const double norm = v.norm();
-  return norm > limit ? Vector3d(v * (limit / norm)) : v;
-}
-
 // Position variance below which the least-squares rule distrusts a direction: contact noise that is
 // left after filtering is about 0.13 mm.
 constexpr double kRidge = 2e-8;  // m²

@@ -96,7 +96,7 @@ void FingerGait::Remember(int finger, const ControlTick& tick, const ObjectWrenc
   found += kFoundShare * (shift - found);
   const double limit = kInsideDisc * tick.gait.disc_radius;
   if (found.norm() > limit) found *= limit / found.norm();
-  gradient_[finger] = regrasp_.algorithm().gradient_W();
+  gradient_[finger] = regrasp_.slide().algorithm().gradient_W();
 }
 
 void FingerGait::StartMotion(const GaitParameters& parameters) {
@@ -189,17 +189,18 @@ void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
       continue;
     }
     Regrasp::Request request;
-    request.finger = step.finger;
+    request.slide.finger = step.finger;
     request.hop = parameters.hop;
     request.explore = exploring;
-    request.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
-    request.criterion = Criterion::kSwitched;
+    request.slide.estimator = parameters.estimator;
+    request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
+    request.slide.criterion = Criterion::kSwitched;
     if (step.objective == GaitObjective::kStabilityWithoutNext &&
         pick + 1 < static_cast<int>(order_.size())) {
-      request.criterion = Criterion::kStability;
-      request.without = order_[pick + 1].finger;
+      request.slide.criterion = Criterion::kStability;
+      request.slide.without = order_[pick + 1].finger;
     }
-    request.gradient_W = gradient_[step.finger];
+    request.slide.gradient_W = gradient_[step.finger];
     request.disc_share = DiscShare(tick);
     regrasp_.Start(request);
     happened_.regrasp_began = true;
@@ -296,11 +297,11 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
         happened_.aborted = true;
       }
       const Regrasp::Phase before = regrasp_.phase();
-      const int finger = regrasp_.request().finger;
+      const int finger = regrasp_.finger();
       regrasp_.Update(tick, TargetOf(finger, wrench, parameters), controller, tasks);
       happened_.changed |= regrasp_.phase() != before;
-      happened_.explore_began = regrasp_.explore_began();
-      happened_.explore_ended = regrasp_.explore_ended();
+      happened_.explore_began = regrasp_.slide().slide_began();
+      happened_.explore_ended = regrasp_.slide().slide_ended();
       if (happened_.explore_ended) Remember(finger, tick, wrench);
       if (regrasp_.active()) break;
       happened_.regrasp_ended = true;

@@ -59,7 +59,7 @@ class FingerGait {
   }
   bool stopped() const { return stop_; }
   /// The finger that regrasps, or -1.
-  int finger() const { return phase_ == GaitPhase::kRegrasp ? regrasp_.request().finger : -1; }
+  int finger() const { return phase_ == GaitPhase::kRegrasp ? regrasp_.finger() : -1; }
   const Regrasp& regrasp() const { return regrasp_; }
   const LocalManipulation& manipulation() const { return manipulation_; }
   const Happened& happened() const { return happened_; }

@@ -47,7 +47,14 @@ struct GaitParameters {
   double slide_force = 0.3;    ///< normal force of a sliding finger [N]
   double slide_gain = 8.0;     ///< sliding speed per distance [1/s]
   double slide_speed = 0.015;  ///< highest [m/s]
-  double lead = 0.5;           ///< target ahead of the first contact, in shares of the next step
+  double slide_arrived = 0.0005;  ///< ... which ends this near [m]
+  double slide_limit_s = 2.5;     ///< ... or after so long
+  double touch_s = 0.003;         ///< a landing counts after so long in contact
+  double land_distance = 0.0015;  ///< this near to above the target the finger comes down [m]
+  double land_late_s = 0.15;      ///< it comes down anyway so long after its target got there
+  double land_depth = 0.010;      ///< so far below where it left there is no surface [m]
+  double clear_distance = 0.001;  ///< above the surface, after so far a touch is an obstacle [m]
+  double lead = 0.5;              ///< target ahead of the first contact, in shares of the next step
   // Disturbances.
   double abort_position = 0.003;         ///< object error at which a regrasp is broken off [m]
   double abort_rotation = 0.2094395102;  ///< (12 deg)
@@ -55,6 +62,8 @@ struct GaitParameters {
   double disc_radius =
       0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
   double explore_s = 0.5;  ///< longest exploration per regrasp [s]
+  double explore_settle_s = 0.08;  ///< rest before it, until the filters follow
+  double return_limit_s = 0.6;     ///< longest way to its last end, and to the best contact
   Estimator estimator = Estimator::kLeastSquares;  ///< of its gradient
 };
 

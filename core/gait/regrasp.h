@@ -2,14 +2,11 @@
 
 /// One finger gives up its contact and takes another one while the others hold: load transfer, the
 /// way (a hop or a slide) to its target in the palm, Algorithm 1 there if wanted, and load transfer
-/// back.
+/// back. Load transfer and exploration are a guided slide (core/exploration/guided_slide.h).
 
-#include "core/control/control_tick.h"
-#include "core/control/hybrid_controller.h"
-#include "core/exploration/best_contact.h"
-#include "core/exploration/objective.h"
-#include "core/exploration/surface_exploration.h"
+#include "core/exploration/guided_slide.h"
 #include "core/gait/gait_parameters.h"
+#include "core/gait/hop.h"
 
 namespace regrasp {
 
@@ -31,14 +28,9 @@ class Regrasp {
   };
 
   struct Request {
-    int finger = -1;
-    bool hop = true;  ///< otherwise it slides
+    GuidedSlide::Request slide;  ///< finger, objective, seed; `leaves` is always true
+    bool hop = true;             ///< otherwise it slides
     bool explore = false;
-    Criterion criterion = Criterion::kManipulability;
-    int without =
-        -1;  ///< explore: the stability that counts is that without this finger; -1: with all
-    std::uint64_t seed = 0;
-    Vector3d gradient_W = Vector3d::Zero();  ///< start of Algorithm 1 [1/m]; zero: random
     double disc_share = 1;  ///< explore: of gait.disc_radius, within which the new contact may be
   };
   /// Where the finger shall go, in W; follows the object's reference position.
@@ -58,37 +50,26 @@ class Regrasp {
               FingerTasks* tasks);
 
   const Request& request() const { return request_; }
-  Phase phase() const { return phase_; }
-  bool active() const { return phase_ != Phase::kIdle && phase_ != Phase::kDone; }
+  int finger() const { return request_.slide.finger; }
+  Phase phase() const;
+  bool active() const { return slide_.active(); }
   bool aborted() const { return aborted_; }
   /// Found no surface to stand on.
-  bool lost() const { return lost_; }
-  /// True in the tick in which the exploration begins at the target, and in which it ends.
-  bool explore_began() const { return explore_began_; }
-  bool explore_ended() const { return explore_ended_; }
-  double phi() const { return phi_; }
-  bool on_stability() const { return on_stability_; }
-  const SurfaceExploration& algorithm() const { return algorithm_; }
+  bool lost() const { return slide_.no_surface(); }
+  const GuidedSlide& slide() const { return slide_; }
   void AddTo(StateHasher* hasher) const;
 
  private:
-  void Enter(Phase phase);
-  void Reach(const Vector3d& velocity, double dt, FingerTask* task);
-  void Explore(const ControlTick& tick, const Target& target, FingerTask* task);
+  /// Away from its old contact: one tick of the way to the target.
+  void Travel(const ControlTick& tick, const Target& target, FingerTask* task);
+  /// Over the surface towards the target; true when it is there, or has tried for long enough.
+  bool SlideOver(const ControlTick& tick, const Target& target, FingerTask* task);
 
   Request request_;
-  Phase phase_ = Phase::kIdle;
-  int ticks_ = 0;  // in this phase
-  bool abort_ = false, aborted_ = false, lost_ = false;
-  bool explore_began_ = false, explore_ended_ = false;
-  double cap_start_ = 0;
-  Vector3d p_target_W_ = Vector3d::Zero();  // of the fingertip centre, while in the air
-  Vector3d normal_W_ = Vector3d::UnitZ();   // up, while in the air
-  double path_ = 0;                         // in this phase [m]
-  double phi_ = 0;
-  bool on_stability_ = false;
-  BestContact best_;
-  SurfaceExploration algorithm_;
+  bool aborted_ = false;
+  int slide_ticks_ = 0;  // of the slide to the target
+  GuidedSlide slide_;
+  Hop hop_;
 };
 
 std::string_view Name(Regrasp::Phase phase);  ///< "unload", "lift", ...

@@ -6,23 +6,25 @@ namespace regrasp {
 namespace {
 
 bool CountsStability(const Regrasp& regrasp) {
-  return regrasp.request().criterion == Criterion::kStability || regrasp.on_stability();
+  const GuidedSlide& slide = regrasp.slide();
+  return slide.request().criterion == Criterion::kStability || slide.on_stability();
 }
 
 }  // namespace
 
 double GaitReport::TruePhi(const Regrasp& regrasp, const ActivityContext& context) const {
-  const Regrasp::Request& request = regrasp.request();
+  const GuidedSlide::Request& request = regrasp.slide().request();
   context.judge.Look(context.tick, context.world.state(), context.parameters.control);
   return context.judge.Phi(
       CountsStability(regrasp) ? Criterion::kStability : Criterion::kManipulability, request.finger,
-      context.now.grasp.without(request.without), context.parameters, regrasp.on_stability());
+      context.now.grasp.without(request.without), context.parameters,
+      regrasp.slide().on_stability());
 }
 
 void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& context) {
-  last_.finger = regrasp.request().finger;
-  last_.criterion = regrasp.request().criterion;
-  last_.on_stability = regrasp.on_stability();
+  last_.finger = regrasp.finger();
+  last_.criterion = regrasp.slide().request().criterion;
+  last_.on_stability = regrasp.slide().on_stability();
   last_.aborted = regrasp.aborted();
   last_.phi_after = TruePhi(regrasp, context);
   if (!regrasp.request().explore) last_.phi_start = last_.phi_before;
@@ -37,7 +39,7 @@ void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& contex
 void GaitReport::Report(const FingerGait& gait, const ActivityContext& context) {
   const FingerGait::Happened& happened = gait.happened();
   const Regrasp& regrasp = gait.regrasp();
-  const int finger = regrasp.request().finger;
+  const int finger = regrasp.finger();
   const auto emit = [&](EventKind kind, int of, double value, const char* format, auto... args) {
     context.log.Emit(context.tick, kind, of, value, format, args...);
   };

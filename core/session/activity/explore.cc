@@ -17,6 +17,7 @@ ExploreReason ReasonOf(FingerExploration::End end) {
       return ExploreReason::kObjectMoved;
     case FingerExploration::End::kContactLost:
       return ExploreReason::kContactLost;
+    case FingerExploration::End::kTime:
     case FingerExploration::End::kNone:
       return ExploreReason::kNone;
   }
@@ -124,7 +125,8 @@ void ExploreActivity::Assess(const ActivityContext& context) {
     result.phi_true_initial = TruePhi(context);
     p_path_ = context.judge.estimate().fingers[request_.finger].p_WC;
   }
-  if (exploration_.phase() == FingerExploration::Phase::kSlide && context.tick % kPathTicks == 0) {
+  if (exploration_.phase() == FingerExploration::Phase::kExplore &&
+      context.tick % kPathTicks == 0) {
     const Vector3d& p_WC = context.judge.estimate().fingers[request_.finger].p_WC;
     result.path_length_m += (p_WC - p_path_).norm();
     p_path_ = p_WC;
@@ -149,26 +151,22 @@ void ExploreActivity::AssessEnd(const ActivityContext& context) {
 void ExploreActivity::Record(const ActivityContext& context, Frame* frame) const {
   for (std::size_t i = 0; i < frame->fingers.size(); ++i)
     if (context.tasks[i].mode == FingerMode::kSlide) frame->fingers[i].role = FingerRole::kExplore;
-  const auto phase = exploration_.phase();
-  if (phase == FingerExploration::Phase::kIdle || phase == FingerExploration::Phase::kDone) return;
-  frame->exploration = FrameOf(request_.finger, request_.criterion, exploration_.on_stability(),
-                               exploration_.cycles(), exploration_.phi(),
-                               context.now.exploration.epsilon, exploration_.algorithm());
+  if (exploration_.slide().active())
+    frame->exploration = FrameOf(exploration_.slide(), context.now.exploration.epsilon);
 }
 
-ExplorationFrame FrameOf(int finger, Criterion criterion, bool on_stability, int cycle, double phi,
-                         double epsilon, const SurfaceExploration& algorithm) {
+ExplorationFrame FrameOf(const GuidedSlide& slide, double epsilon) {
   ExplorationFrame frame;
   frame.active = true;
-  frame.finger = finger;
-  frame.criterion = criterion;
-  frame.on_stability = on_stability;
-  frame.cycle = cycle;
-  frame.phi = phi;
+  frame.finger = slide.request().finger;
+  frame.criterion = slide.request().criterion;
+  frame.on_stability = slide.on_stability();
+  frame.cycle = slide.cycles();
+  frame.phi = slide.phi();
   frame.epsilon = epsilon;
-  frame.gradient_norm = algorithm.gradient_norm();
-  frame.gradient_W = algorithm.gradient_W();
-  frame.velocity_W = algorithm.velocity_W();
+  frame.gradient_norm = slide.algorithm().gradient_norm();
+  frame.gradient_W = slide.algorithm().gradient_W();
+  frame.velocity_W = slide.algorithm().velocity_W();
   return frame;
 }
 

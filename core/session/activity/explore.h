@@ -35,8 +35,7 @@ class ExploreActivity : public Activity {
   char refusal_[128] = {};
 };
 
-/// What a frame tells of Algorithm 1.
-ExplorationFrame FrameOf(int finger, Criterion criterion, bool on_stability, int cycle, double phi,
-                         double epsilon, const SurfaceExploration& algorithm);
+/// What a frame tells of Algorithm 1. `epsilon`: exploration.epsilon.
+ExplorationFrame FrameOf(const GuidedSlide& slide, double epsilon);
 
 }  // namespace regrasp

@@ -68,14 +68,12 @@ void RotateActivity::Record(const ActivityContext& context, Frame* frame) const 
   gait.achieved_angle_rad = context.job.rotate.angle_rad;
   gait.cycles = gait_.cycles();
   gait.regrasps = gait_.regrasps();
-  const Regrasp& regrasp = gait_.regrasp();
-  if (regrasp.phase() != Regrasp::Phase::kExplore) return;
-  const Regrasp::Request& request = regrasp.request();
-  if (context.tasks[request.finger].mode == FingerMode::kSlide)
-    frame->fingers[request.finger].role = FingerRole::kExplore;
-  frame->exploration = FrameOf(request.finger, request.criterion, regrasp.on_stability(),
-                               regrasp.algorithm().cycle(), regrasp.phi(),
-                               context.parameters.exploration.epsilon, regrasp.algorithm());
+  const GuidedSlide& slide = gait_.regrasp().slide();
+  if (slide.phase() != GuidedSlide::Phase::kExplore) return;
+  const int finger = slide.request().finger;
+  if (context.tasks[finger].mode == FingerMode::kSlide)
+    frame->fingers[finger].role = FingerRole::kExplore;
+  frame->exploration = FrameOf(slide, context.parameters.exploration.epsilon);
 }
 
 void RotateActivity::AddTo(StateHasher* hasher) const {
