@@ -52,6 +52,8 @@ install(FILES ${CMAKE_BINARY_DIR}/regraspd.service ${CMAKE_CURRENT_LIST_DIR}/reg
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright README.md
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/regrasp)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/regrasp)
+# The Python module, where Debian's python3 looks for it.
+install(DIRECTORY cli/python/regrasp DESTINATION lib/python3/dist-packages PATTERN __pycache__ EXCLUDE)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME regrasp)
@@ -65,6 +67,8 @@ regrasping with one finger after the other. regraspd is the service,
 regrasp its command line.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_PROVIDES python3-regrasp)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS python3)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS fonts-dejavu-core)  # the font of the pictures, found by path
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm

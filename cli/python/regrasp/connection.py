@@ -1,0 +1,98 @@
+"""One connection to the daemon: JSON-RPC 2.0, one object per line, answers in the order of the requests."""
+
+import json
+import socket
+
+
+class Error(RuntimeError):
+    """The daemon refused a request. `code` as in docs/protocol.md; `hint`, `param`, `allowed` where it gave them."""
+
+    def __init__(self, method, error):
+        data = error.get("data") or {}
+        self.method, self.code = method, error["code"]
+        self.hint, self.param, self.allowed = data.get("hint"), data.get("param"), data.get("allowed")
+        super().__init__(f"{method}: {error['message']}" + (f" (try: {self.hint})" if self.hint else ""))
+
+
+class Job:
+    """Work that the daemon has begun: what `grasp`, `explore`, `rotate`, ... return."""
+
+    def __init__(self, connection, number):
+        self._connection, self.id = connection, number
+
+    def __repr__(self):
+        return f"Job({self.id})"
+
+    def get(self):
+        """Its record now: `state`, `progress` and what it has found so far."""
+        return self._connection.call("job.get", id=self.id)
+
+    def wait(self, timeout_s=None):
+        """Its record once it has ended, whatever the end was. Raises Error (-32004) after `timeout_s` of wall clock."""
+        limit = {} if timeout_s is None else {"timeout_s": timeout_s}
+        return self._connection.call("job.wait", id=self.id, **limit)
+
+    def done(self, timeout_s=None):
+        """Like `wait`, but raises RuntimeError unless the job ended with `done`."""
+        record = self.wait(timeout_s)
+        if record["state"] != "done":
+            raise RuntimeError(f"job {self.id} {record['method']}: {record['state']}: {record.get('error') or ''}")
+        return record
+
+    def cancel(self):
+        """Ends it; the hand goes on holding."""
+        return self._connection.call("job.cancel", id=self.id)
+
+
+class Connection:
+    """A connection to the socket `path`. Raises OSError when nobody listens there."""
+
+    def __init__(self, path):
+        self.path = str(path)
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._socket.connect(self.path)
+        except OSError:
+            self._socket.close()
+            raise
+        self._lines = self._socket.makefile("r", encoding="utf-8", newline="\n")
+        self._last_id = 0
+
+    def close(self):
+        self._lines.close()
+        self._socket.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def _read(self):
+        line = self._lines.readline()
+        if not line.endswith("\n"):
+            raise ConnectionError(f"{self.path}: the daemon closed the connection")
+        return json.loads(line)
+
+    def call(self, method, **params):
+        """The result of one request. Raises Error when the daemon refuses it; nothing has changed then."""
+        self._last_id += 1
+        request = {"jsonrpc": "2.0", "id": self._last_id, "method": method, "params": params}
+        self._socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
+        while "id" not in (answer := self._read()):
+            pass  # a notification of a subscription made with call()
+        if "error" in answer:
+            raise Error(method, answer["error"])
+        return answer["result"]
+
+    def watch(self, topic, rate_hz=None, count=None):
+        """Samples of a topic as they come, on a connection of their own: an iterator of dicts. It ends after `count`
+        samples, or when it is closed. `dropped` counts samples that were left out because the reader was slow."""
+        with Connection(self.path) as stream:
+            stream.call("subscribe", topic=topic, **({} if rate_hz is None else {"rate_hz": rate_hz}))
+            given = 0
+            while count is None or given < count:
+                message = stream._read()
+                if message.get("method") == "event":
+                    given += 1
+                    yield message["params"]

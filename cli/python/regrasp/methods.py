@@ -1,0 +1,335 @@
+"""The methods of the daemon. Made by make_methods.py from the method table; change that, not this file."""
+
+from .connection import Job
+
+
+class Methods:
+    """Every method of the daemon; arguments left out (None) are not sent."""
+
+    def _ask(self, method, params):
+        return self.call(method, **{name: value for name, value in params.items() if value is not None})
+
+    def _job(self, method, params):
+        return Job(self, self._ask(method, params)["job"])
+
+    def checkpoint_list(self) -> dict:
+        """The checkpoints in the output directory.
+        Returns checkpoints: [{name, tick, time_s, state, state_hash, seed, object, commands, same_build}].
+        """
+        return self._ask("checkpoint.list", {})
+
+    def checkpoint_restore(self, name: str, seed: int | None = None) -> Job:
+        """Go on from a checkpoint: identically, or with another seed.
+        name: letters, digits, - _ . ; at most 64, no dot first.
+        seed: branch: sensor noise and later random choices follow this seed; 0 to 9007199254740992; left out: go on
+            identically.
+        Returns a Job.
+        """
+        return self._job("checkpoint.restore", {"name": name, "seed": seed})
+
+    def checkpoint_save(self, name: str) -> dict:
+        """Keep this moment, to go on from it later.
+        name: letters, digits, - _ . ; at most 64, no dot first.
+        Returns name, tick, time_s, state, state_hash, commands, path.
+        """
+        return self._ask("checkpoint.save", {"name": name})
+
+    def contacts(self) -> dict:
+        """What the controller senses at each fingertip.
+        Returns tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, fingers:
+            {NAME: {role, in_contact, p_WC_m, normal_W, force_n, force_command_W_n}}; p_WC_m and normal_W are null
+            without contact.
+        """
+        return self._ask("contacts", {})
+
+    def describe(self, method: str | None = None) -> dict:
+        """Every method with its parameters, types, units and ranges.
+        method: only this method; left out: all methods.
+        Returns version, protocol, methods, errors.
+        """
+        return self._ask("describe", {"method": method})
+
+    def events(self, count: int | None = None) -> dict:
+        """The latest events.
+        count: at most so many, the newest; 1 to 1000; left out: 100.
+        Returns events: [{tick, t_s, kind, finger, text, ...}], oldest first; dropped.
+        """
+        return self._ask("events", {"count": count})
+
+    def explore(self, finger: str, criterion: str | None = None, estimator: str | None = None, seed: int | None = None, max_cycles: int | None = None) -> Job:
+        """Improve the grasp by sliding one finger over the surface.
+        finger: the finger that explores; one of first, middle, ring, little, thumb.
+        criterion: what it maximises; one of manipulability, stability, switched, combined; left out:
+            manipulability.
+        estimator: how it estimates the gradient; secant is the rule as printed; one of least_squares, secant; left
+            out: least_squares.
+        seed: seed of the random start direction; 0 to 9007199254740992; left out: the seed of the run.
+        max_cycles: give up after so many cycles; 1 to 1000000; left out: parameter exploration.max_cycles.
+        Returns a Job.
+        """
+        return self._job("explore", {"finger": finger, "criterion": criterion, "estimator": estimator, "seed": seed, "max_cycles": max_cycles})
+
+    def grasp(self) -> Job:
+        """Close the hand on the object and hold it.
+        Returns a Job.
+        """
+        return self._job("grasp", {})
+
+    def job_cancel(self, id: int) -> dict:
+        """End a job.
+        id: number of the job; 1 to 9007199254740992.
+        Returns the record of the job.
+        """
+        return self._ask("job.cancel", {"id": id})
+
+    def job_get(self, id: int) -> dict:
+        """The record of a job.
+        id: number of the job; 1 to 9007199254740992.
+        Returns the record of the job.
+        """
+        return self._ask("job.get", {"id": id})
+
+    def job_list(self) -> dict:
+        """The last 256 jobs, oldest first.
+        Returns jobs: [record].
+        """
+        return self._ask("job.list", {})
+
+    def job_wait(self, id: int, timeout_s: float | None = None) -> dict:
+        """Wait until a job has ended; the only deferred answer.
+        id: number of the job; 1 to 9007199254740992.
+        timeout_s: answer with error -32004 after so long (wall clock) [s]; 0 to 1000000; left out: no limit.
+        Returns the record of the job.
+        """
+        return self._ask("job.wait", {"id": id, "timeout_s": timeout_s})
+
+    def joints(self) -> dict:
+        """Joint angles, rates and torques.
+        Returns tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}].
+        """
+        return self._ask("joints", {})
+
+    def move(self, offset_m: list[float] | None = None, rotation_rad: list[float] | None = None) -> Job:
+        """Move the object a little with all fingers, without a regrasp.
+        offset_m: shift of the object's centre, in W; its length is at most 0.05 m [m]; -0.05 to 0.05; left out: [0,
+            0, 0].
+        rotation_rad: turn of the object, a rotation vector in W; its length is at most pi [rad]; -3.141592653589793
+            to 3.141592653589793; left out: [0, 0, 0].
+        Returns a Job.
+        """
+        return self._job("move", {"offset_m": offset_m, "rotation_rad": rotation_rad})
+
+    def noise_get(self) -> dict:
+        """Noise levels of the sensors.
+        Returns preset and every level.
+        """
+        return self._ask("noise.get", {})
+
+    def noise_set(self, preset: str | None = None, position_m: float | None = None, normal_rad: float | None = None, force_n: float | None = None, joint_rad: float | None = None, object_position_m: float | None = None, object_rotation_rad: float | None = None) -> dict:
+        """Change noise levels.
+        preset: all levels of a preset; other parameters then change single levels; one of off, fine, paper, coarse,
+            taxel; left out: the present levels.
+        position_m: contact position, standard deviation per axis [m]; 0 to 0.1; left out: unchanged.
+        normal_rad: contact normal, per tangent axis [rad]; 0 to 1.6; left out: unchanged.
+        force_n: normal force [N]; 0 to 10; left out: unchanged.
+        joint_rad: joint angle [rad]; 0 to 1.6; left out: unchanged.
+        object_position_m: object position, per axis [m]; 0 to 0.1; left out: unchanged.
+        object_rotation_rad: object orientation, per axis [rad]; 0 to 1.6; left out: unchanged.
+        Returns preset and every level.
+        """
+        return self._ask("noise.set", {"preset": preset, "position_m": position_m, "normal_rad": normal_rad, "force_n": force_n, "joint_rad": joint_rad, "object_position_m": object_position_m, "object_rotation_rad": object_rotation_rad})
+
+    def param_get(self, name: str | None = None) -> dict:
+        """Values, units, ranges and sources of parameters.
+        name: the parameter; one of control.close_force, control.close_speed, control.contact_filter_s,
+            control.contact_from_normal, control.drop_distance, control.force_filter_s,
+            control.force_integral_limit, control.free_stiffness, control.friction_estimate, control.grip_force,
+            control.grip_ramp_s, control.grip_weight, control.joint_filter_s, control.limit_margin,
+            control.limit_stiffness, control.mass_estimate, control.max_normal_force, control.min_normal_force,
+            control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
+            control.position_error_limit, control.position_integral, control.position_stiffness,
+            control.posture_stiffness, control.reapproach_delay_s, control.reapproach_force,
+            control.reapproach_speed, control.residual_limit, control.rotation_error_limit,
+            control.rotation_integral, control.rotation_stiffness, control.settle_s, control.slide_force_limit,
+            control.slide_friction_share, control.slide_stiffness, control.stability_measure,
+            control.stability_threshold, control.stand_in_release_s, control.torque_integral_limit,
+            exploration.clearance, exploration.converged_updates, exploration.dither_hz, exploration.dither_speed,
+            exploration.epsilon, exploration.eta, exploration.forgetting, exploration.gradient_max,
+            exploration.lambda, exploration.least_facing, exploration.limit_margin, exploration.max_cycles,
+            exploration.max_excursion, exploration.min_displacement, exploration.normal_force, exploration.sigma,
+            exploration.speed_max, exploration.speed_min, exploration.stability_weight, exploration.transfer_s,
+            exploration.update_cycles, gait.abort_position, gait.abort_rotation, gait.acceleration,
+            gait.across_speed, gait.by_need, gait.disc_radius, gait.down_speed, gait.estimator, gait.explore_s,
+            gait.grip_force, gait.hop, gait.hop_force, gait.lag_position, gait.lag_rotation, gait.lead,
+            gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min, gait.margin_wanted,
+            gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode, gait.move_speed, gait.settle_s,
+            gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
+            gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
+            start.joint_sigma_rad, start.object_sigma_m; left out: all parameters.
+        Returns parameters: [{name, value, unit, min, max, description, source}], or one of them.
+        """
+        return self._ask("param.get", {"name": name})
+
+    def param_set(self, name: str, value: object) -> dict:
+        """Change a parameter.
+        name: the parameter; one of control.close_force, control.close_speed, control.contact_filter_s,
+            control.contact_from_normal, control.drop_distance, control.force_filter_s,
+            control.force_integral_limit, control.free_stiffness, control.friction_estimate, control.grip_force,
+            control.grip_ramp_s, control.grip_weight, control.joint_filter_s, control.limit_margin,
+            control.limit_stiffness, control.mass_estimate, control.max_normal_force, control.min_normal_force,
+            control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
+            control.position_error_limit, control.position_integral, control.position_stiffness,
+            control.posture_stiffness, control.reapproach_delay_s, control.reapproach_force,
+            control.reapproach_speed, control.residual_limit, control.rotation_error_limit,
+            control.rotation_integral, control.rotation_stiffness, control.settle_s, control.slide_force_limit,
+            control.slide_friction_share, control.slide_stiffness, control.stability_measure,
+            control.stability_threshold, control.stand_in_release_s, control.torque_integral_limit,
+            exploration.clearance, exploration.converged_updates, exploration.dither_hz, exploration.dither_speed,
+            exploration.epsilon, exploration.eta, exploration.forgetting, exploration.gradient_max,
+            exploration.lambda, exploration.least_facing, exploration.limit_margin, exploration.max_cycles,
+            exploration.max_excursion, exploration.min_displacement, exploration.normal_force, exploration.sigma,
+            exploration.speed_max, exploration.speed_min, exploration.stability_weight, exploration.transfer_s,
+            exploration.update_cycles, gait.abort_position, gait.abort_rotation, gait.acceleration,
+            gait.across_speed, gait.by_need, gait.disc_radius, gait.down_speed, gait.estimator, gait.explore_s,
+            gait.grip_force, gait.hop, gait.hop_force, gait.lag_position, gait.lag_rotation, gait.lead,
+            gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min, gait.margin_wanted,
+            gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode, gait.move_speed, gait.settle_s,
+            gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
+            gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
+            start.joint_sigma_rad, start.object_sigma_m.
+        value: its new value, in the unit and range that param.get tells.
+        Returns {name, value, unit, min, max, description, source}.
+        """
+        return self._ask("param.set", {"name": name, "value": value})
+
+    def pause(self) -> dict:
+        """Stop the clock of the simulation.
+        Returns paused, tick.
+        """
+        return self._ask("pause", {})
+
+    def plot(self, name: str, file: str | None = None, last_s: float | None = None) -> dict:
+        """Draw a picture into the output directory.
+        name: the picture; one of comparison, contacts, gait, incident, quality, scene.
+        file: file name (not a path), written in the daemon's output directory; left out: NAME.png.
+        last_s: only the last so many seconds [s]; 0.1 to 600; left out: everything kept.
+        Returns file (name), path, bytes, tick.
+        """
+        return self._ask("plot", {"name": name, "file": file, "last_s": last_s})
+
+    def push(self, force_n: list[float], duration_s: float | None = None) -> dict:
+        """Push the object: a disturbance.
+        force_n: force at the object's centre, in W [N]; -100 to 100.
+        duration_s: how long it acts [s]; 0.001 to 60; left out: 0.1.
+        Returns force_n, duration_s.
+        """
+        return self._ask("push", {"force_n": force_n, "duration_s": duration_s})
+
+    def quality(self) -> dict:
+        """Quality of the grasp.
+        Returns tick, time_s, criterion, stability, threshold, load_margin_n, measures, fingers: {NAME:
+            {manipulability, load_margin_without_n, joint_limit_margin_rad}}.
+        """
+        return self._ask("quality", {})
+
+    def record_list(self) -> dict:
+        """The run files in the output directory.
+        Returns recordings: [{file, bytes, complete, recording}].
+        """
+        return self._ask("record.list", {})
+
+    def record_start(self, file: str | None = None, rate_hz: float | None = None) -> dict:
+        """Write the run into a file, from its beginning; it can be replayed.
+        file: file name (not a path), written in the daemon's output directory; left out: run-001.mcap, or the next
+            number.
+        rate_hz: samples per second of simulated time; commands, events and state hashes are always complete [Hz];
+            0.1 to 100; left out: 25.
+        Returns file, path, rate_hz, tick, commands (so far).
+        """
+        return self._ask("record.start", {"file": file, "rate_hz": rate_hz})
+
+    def record_stop(self) -> dict:
+        """End the run file.
+        Returns file, path, messages, bytes, dropped.
+        """
+        return self._ask("record.stop", {})
+
+    def release(self) -> Job:
+        """Open the hand.
+        Returns a Job.
+        """
+        return self._job("release", {})
+
+    def reset(self, seed: int | None = None, object: str | None = None) -> dict:
+        """Start a new run; parameters and noise levels stay.
+        seed: seed of the new run; 0 to 9007199254740992; left out: the present seed.
+        object: another object, by name; one of cube_40mm, cube_45mm, egg, sphere, sphere_40mm, sphere_45mm,
+            sphere_60mm, zoo_box_flat, zoo_box_rounded, zoo_box_tall, zoo_bumpy_five, zoo_bumpy_lopsided,
+            zoo_bumpy_three, zoo_cube_rounded, zoo_cylinder_across, zoo_cylinder_lying, zoo_cylinder_upright,
+            zoo_cylinder_wide, zoo_ellipsoid_flat, zoo_ellipsoid_lying, zoo_ellipsoid_tall,
+            zoo_ellipsoid_three_axes, zoo_hexagon, zoo_knobbly, zoo_lens, zoo_peanut_lying, zoo_peanut_upright,
+            zoo_pear, zoo_pear_lying, zoo_pillow, zoo_square, zoo_superquadric_02, zoo_superquadric_04,
+            zoo_superquadric_06, zoo_superquadric_08, zoo_superquadric_12, zoo_superquadric_14, zoo_triangle; left
+            out: the present object.
+        Returns seed, object.
+        """
+        return self._ask("reset", {"seed": seed, "object": object})
+
+    def resume(self) -> dict:
+        """Let the clock of the simulation run again.
+        Returns paused, tick.
+        """
+        return self._ask("resume", {})
+
+    def rotate(self, angle_rad: float | None = None, turns: float | None = None, continuous: bool | None = None, axis: list[float] | None = None, speed_rad_s: float | None = None) -> Job:
+        """Turn the object in the hand by finger gaiting.
+        angle_rad: turn by this angle, signed; or give turns or continuous [rad]; -10000 to 10000; left out: not
+            used.
+        turns: turn so many times, signed; -1000 to 1000; left out: not used.
+        continuous: turn until stopped; left out: false.
+        axis: direction in W about which the object turns; any length but zero; -1000000 to 1000000; left out: [0,
+            0, 1].
+        speed_rad_s: speed of the object while it moves [rad/s]; 0.001 to 10; left out: parameter gait.speed_rad_s.
+        Returns a Job.
+        """
+        return self._job("rotate", {"angle_rad": angle_rad, "turns": turns, "continuous": continuous, "axis": axis, "speed_rad_s": speed_rad_s})
+
+    def shutdown(self) -> dict:
+        """Stop the daemon cleanly.
+        Returns stopping, activated (true: the service manager starts another at the next connection).
+        """
+        return self._ask("shutdown", {})
+
+    def status(self) -> dict:
+        """State of daemon and simulation.
+        Returns version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, speed, tick_p99_s,
+            seed, hand, object, job, gait: {active, phase, finger, target_angle_rad, achieved_angle_rad, cycles,
+            regrasps}, incident (the last drop: tick, cause, record, picture; or null), noise, clients, ....
+        """
+        return self._ask("status", {})
+
+    def step(self, ticks: int | None = None) -> Job:
+        """Advance a paused simulation.
+        ticks: how many ticks; 1 to 1000000000; left out: 1.
+        Returns a Job.
+        """
+        return self._job("step", {"ticks": ticks})
+
+    def stop(self) -> dict:
+        """End the current job and keep holding.
+        Returns job (the one that ends), or null.
+        """
+        return self._ask("stop", {})
+
+    def truth(self) -> dict:
+        """What only the simulator knows.
+        Returns tick, time_s, object {p_WO_m, q_WO_wxyz, v_m_s, w_rad_s, mass_kg, friction}, contacts [{link,
+            finger, p_WC_m, normal_W, force_W_n, depth_m}], gravity_W_m_s2.
+        """
+        return self._ask("truth", {})
+
+    def version(self) -> dict:
+        """Version of the daemon.
+        Returns version, protocol.
+        """
+        return self._ask("version", {})
