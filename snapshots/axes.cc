@@ -142,6 +142,7 @@ double DrawLegend(Canvas* canvas, Point2 at, const std::string& heading,
 }
 
 void DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts) {
+  if (!canvas->with_title()) return;
   const double left = 40, room = canvas->width() - 2 * left;
   const auto fitted = [&](const std::string& text, double size, bool bold) {
     return std::min(size, size * room / std::max(1.0, canvas->TextWidth(text, size, bold)));

@@ -7,21 +7,19 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <numbers>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 namespace regrasp {
 namespace {
 
-constexpr int kShift = 4;  // fractional bits of OpenCV's drawing coordinates
-constexpr std::array<const char*, 3> kSuffixes = {".png", ".jpg", ".jpeg"};
-
-cv::Scalar Bgr(Colour c) { return {double(c.b), double(c.g), double(c.r)}; }
+constexpr double kLogicalWidth = 1600;
+constexpr double kSmallestText = 15;  // of all pictures, logical
+constexpr double kLeastText_pt = 7;   // on paper
+constexpr double kNarrowest = 1000;   // logical: curves and legends side by side need so much
+constexpr std::array<const char*, 5> kSuffixes = {".png", ".jpg", ".jpeg", ".pdf", ".svg"};
 
 std::string LowerSuffix(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
@@ -30,86 +28,66 @@ std::string LowerSuffix(const std::string& path) {
   return suffix;
 }
 
-/// Full path of a DejaVu font file, or throws.
-std::string FindFont(const std::string& file, const std::string& picture) {
-  std::vector<std::filesystem::path> folders;
-  if (const char* dir = std::getenv("REGRASP_FONT_DIR")) folders.emplace_back(dir);
-  for (const char* dir : {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu",
-                          "/usr/share/fonts/TTF", "/usr/local/share/fonts"})
-    folders.emplace_back(dir);
-  for (const auto& folder : folders) {
-    std::error_code ignored;
-    if (std::filesystem::exists(folder / file, ignored)) return (folder / file).string();
-  }
-  throw std::runtime_error(
-      fmt::format("{}: font {} not found in {} (install the package fonts-dejavu-core, or set "
-                  "REGRASP_FONT_DIR)",
-                  picture, file, folders.front().string()));
+/// Checked: what a canvas of this size and path is drawn on.
+SheetSize SizeOf(const CanvasSize& size, const std::string& path) {
+  const std::string suffix = LowerSuffix(path);
+  if (std::find(kSuffixes.begin(), kSuffixes.end(), suffix) == kSuffixes.end())
+    throw std::runtime_error(fmt::format(
+        "{}: unsupported suffix '{}' (allowed: .png, .jpg, .jpeg, .pdf, .svg)", path, suffix));
+  if (size.width_px < 400 || size.width_px > 8000 || size.height_px < 300 || size.height_px > 8000)
+    throw std::runtime_error(
+        fmt::format("{}: picture size {}x{} px (allowed: 400x300 .. 8000x8000)", path,
+                    size.width_px, size.height_px));
+  const double unit = size.logical_width < kLogicalWidth
+                          ? size.width_px / size.logical_width
+                          : std::min(size.width_px / kLogicalWidth, size.height_px / 1000.0);
+  return {size.width_px, size.height_px, unit, size.width_mm, suffix};
 }
 
-cv::Ptr<cv::freetype::FreeType2> LoadFont(const std::string& file, const std::string& picture) {
-  auto font = cv::freetype::createFreeType2();
-  font->loadFontData(FindFont(file, picture), 0);
-  return font;
+std::unique_ptr<Sheet> MakeSheet(const SheetSize& size, const Fonts& fonts) {
+  if (size.suffix == ".pdf") return MakePdfSheet(size);
+  if (size.suffix == ".svg") return MakeSvgSheet(size);
+  return MakeRasterSheet(size, fonts);
 }
 
 }  // namespace
 
-Canvas::Canvas(int width_px, int height_px, std::string path)
-    : path_(std::move(path)), width_px_(width_px), height_px_(height_px) {
-  if (std::find(kSuffixes.begin(), kSuffixes.end(), LowerSuffix(path_)) == kSuffixes.end())
-    throw std::runtime_error(fmt::format("{}: unsupported suffix '{}' (allowed: .png, .jpg, .jpeg)",
-                                         path_, LowerSuffix(path_)));
-  if (width_px < 400 || width_px > 8000 || height_px < 300 || height_px > 8000)
-    throw std::runtime_error(fmt::format(
-        "{}: picture size {}x{} px (allowed: 400x300 .. 8000x8000)", path_, width_px, height_px));
-  unit_ = std::min(width_px / 1600.0, height_px / 1000.0);
-  scale_ = unit_ * kOversampling;
-  image_ =
-      cv::Mat(height_px * kOversampling, width_px * kOversampling, CV_8UC3, cv::Scalar::all(255));
-  target_ = image_;
-  regular_ = LoadFont("DejaVuSans.ttf", path_);
-  bold_ = LoadFont("DejaVuSans-Bold.ttf", path_);
+CanvasSize SizeOf(const PlotOptions& options) {
+  CanvasSize size{options.width, options.height};
+  size.with_title = options.with_title;
+  if (options.width_mm <= 0) return size;
+  size.width_mm = options.width_mm;
+  const double width_pt = options.width_mm * 72 / 25.4;
+  size.logical_width =
+      std::clamp(width_pt * kSmallestText / kLeastText_pt, kNarrowest, kLogicalWidth);
+  // As much height as a wide picture has: the print becomes taller instead.
+  size.height_px =
+      static_cast<int>(std::lround(options.height * kLogicalWidth / size.logical_width));
+  return size;
 }
 
-void Canvas::Clip(const Box& box) {
-  const cv::Point a(std::lround(box.x * scale_), std::lround(box.y * scale_));
-  const cv::Point b(std::lround(box.br().x * scale_), std::lround(box.br().y * scale_));
-  const cv::Rect inside = cv::Rect(a, b) & cv::Rect(0, 0, image_.cols, image_.rows);
-  target_ = image_(inside);
-  origin_ = inside.tl();
-}
+Canvas::Canvas(const CanvasSize& size, std::string path)
+    : path_(std::move(path)),
+      with_title_(size.with_title),
+      size_(SizeOf(size, path_)),
+      fonts_(path_),
+      sheet_(MakeSheet(size_, fonts_)) {}
 
-void Canvas::Unclip() {
-  target_ = image_;
-  origin_ = {0, 0};
+void Canvas::Clip(const Box& box) { sheet_->Clip(box); }
+void Canvas::Unclip() { sheet_->Unclip(); }
+void Canvas::Polygon(std::span<const Point2> corners, Colour fill) {
+  sheet_->Polygon(corners, fill);
 }
-
-cv::Point Canvas::Fixed(Point2 p) const {
-  // A logical coordinate is a position on the sheet; pixel k covers [k, k+1), its centre is drawn
-  // at k.
-  const auto fix = [this](double v, int origin) {
-    const double px = std::clamp(v * scale_ - 0.5 - origin, -60000.0, 60000.0);
-    return static_cast<int>(std::lround(px * (1 << kShift)));
-  };
-  return {fix(p.x, origin_.x), fix(p.y, origin_.y)};
-}
-
-int Canvas::Thickness(double width) const {
-  return std::max(1, static_cast<int>(std::lround(width * scale_)));
-}
-
-void Canvas::Stroke(std::span<const Point2> points, const Pen& pen) {
-  std::vector<cv::Point> fixed;
-  fixed.reserve(points.size());
-  for (const Point2& p : points) fixed.push_back(Fixed(p));
-  if (fixed.size() == 1) fixed.push_back(fixed.front());
-  cv::polylines(target_, fixed, false, Bgr(pen.colour), Thickness(pen.width), cv::LINE_AA, kShift);
+void Canvas::FillBox(const Box& box, Colour fill) { sheet_->FillBox(box, fill); }
+void Canvas::Disc(Point2 centre, double radius, Colour fill) { sheet_->Disc(centre, radius, fill); }
+void Canvas::Paste(const cv::Mat& bgr, const Box& box) { sheet_->Paste(bgr, box); }
+void Canvas::Text(Point2 at, const std::string& utf8, const TextStyle& style) {
+  if (!utf8.empty()) sheet_->Text(at, utf8, style);
 }
 
 void Canvas::Polyline(std::span<const Point2> points, const Pen& pen) {
   if (points.empty()) return;
-  if (pen.dash.empty()) return Stroke(points, pen);
+  if (pen.dash.empty()) return sheet_->Stroke(points, pen.colour, pen.width);
   std::size_t k = 0;
   double left = pen.dash[0];
   bool on = true;
@@ -122,7 +100,7 @@ void Canvas::Polyline(std::span<const Point2> points, const Pen& pen) {
       length -= left;
       if (on) {
         stroke.push_back(from);
-        Stroke(stroke, pen);
+        sheet_->Stroke(stroke, pen.colour, pen.width);
       }
       stroke = {from};
       on = !on;
@@ -132,32 +110,12 @@ void Canvas::Polyline(std::span<const Point2> points, const Pen& pen) {
     left -= length;
     if (on) stroke.push_back(points[i]);
   }
-  if (on && stroke.size() > 1) Stroke(stroke, pen);
+  if (on && stroke.size() > 1) sheet_->Stroke(stroke, pen.colour, pen.width);
 }
 
 void Canvas::Line(Point2 a, Point2 b, const Pen& pen) {
   const std::array<Point2, 2> ends = {a, b};
   Polyline(ends, pen);
-}
-
-void Canvas::Polygon(std::span<const Point2> corners, Colour fill) {
-  std::vector<cv::Point> fixed;
-  for (const Point2& p : corners) fixed.push_back(Fixed(p));
-  cv::fillPoly(target_, fixed, Bgr(fill), cv::LINE_AA, kShift);
-}
-
-void Canvas::FillBox(const Box& box, Colour fill) {
-  const cv::Point a(std::lround(box.x * scale_) - origin_.x,
-                    std::lround(box.y * scale_) - origin_.y);
-  const cv::Point b(std::lround(box.br().x * scale_) - origin_.x,
-                    std::lround(box.br().y * scale_) - origin_.y);
-  const cv::Rect inside = cv::Rect(a, b) & cv::Rect(0, 0, target_.cols, target_.rows);
-  if (inside.area() > 0) target_(inside).setTo(Bgr(fill));
-}
-
-void Canvas::Disc(Point2 centre, double radius, Colour fill) {
-  cv::circle(target_, Fixed(centre), static_cast<int>(std::lround(radius * scale_ * (1 << kShift))),
-             Bgr(fill), cv::FILLED, cv::LINE_AA, kShift);
 }
 
 void Canvas::Circle(Point2 centre, double radius, const Pen& pen) {
@@ -169,8 +127,7 @@ void Canvas::Circle(Point2 centre, double radius, const Pen& pen) {
     }
     return Polyline(points, pen);
   }
-  cv::circle(target_, Fixed(centre), static_cast<int>(std::lround(radius * scale_ * (1 << kShift))),
-             Bgr(pen.colour), Thickness(pen.width), cv::LINE_AA, kShift);
+  sheet_->Circle(centre, radius, pen.colour, pen.width);
 }
 
 void Canvas::Mark(Marker marker, Point2 centre, double radius, Colour colour, Colour inside) {
@@ -244,90 +201,25 @@ void Canvas::Arrow(Point2 tail, Point2 head, const Pen& pen, double halo) {
   draw(pen.colour, 0);
 }
 
-double Canvas::TextWidth(const std::string& utf8, double size, bool bold) {
+double Canvas::TextWidth(const std::string& utf8, double size, bool bold) const {
   int baseline = 0;
-  const int em = std::max(4, static_cast<int>(std::lround(size * scale_)));
-  return (bold ? bold_ : regular_)->getTextSize(utf8, em, -1, &baseline).width / scale_;
-}
-
-void Canvas::Text(Point2 at, const std::string& utf8, const TextStyle& style) {
-  if (utf8.empty()) return;
-  const int em = std::max(4, static_cast<int>(std::lround(style.size * scale_)));
-  auto& font = style.bold ? bold_ : regular_;
-  int below = 0;
-  const int width = font->getTextSize(utf8, em, -1, &below).width;
-  // The glyphs are drawn white on black with room around them; what comes out is their coverage.
-  const int margin = em / 2, rise = em + margin;
-  cv::Mat glyphs(2 * em + margin, width + 2 * margin, CV_8UC3, cv::Scalar::all(0));
-  font->putText(glyphs, utf8, {margin, rise}, em, cv::Scalar::all(255), -1, cv::LINE_AA, true);
-  cv::Mat coverage;
-  cv::extractChannel(glyphs, coverage, 0);
-
-  // DejaVu: capitals are 0.73 em high, so the middle of a line lies 0.365 em above its baseline.
-  double lift = 0;
-  if (style.align_y == AlignY::kMiddle) lift = 0.355 * em;
-  if (style.align_y == AlignY::kTop) lift = 0.76 * em;
-  double back = 0;
-  if (style.align_x == AlignX::kCentre) back = width / 2.0;
-  if (style.align_x == AlignX::kRight) back = width;
-  const double anchor_x = margin + back, anchor_y = rise - lift;
-  cv::Point corner(std::lround(at.x * scale_ - anchor_x), std::lround(at.y * scale_ - anchor_y));
-  if (style.upwards) {
-    cv::rotate(coverage, coverage, cv::ROTATE_90_COUNTERCLOCKWISE);
-    // (x, y) of the upright mask went to (y, columns - x).
-    corner = {static_cast<int>(std::lround(at.x * scale_ - anchor_y)),
-              static_cast<int>(std::lround(at.y * scale_ - (glyphs.cols - anchor_x)))};
-  }
-  corner -= origin_;
-  const cv::Rect whole(corner, coverage.size());
-  const cv::Rect inside = whole & cv::Rect(0, 0, target_.cols, target_.rows);
-  if (inside.area() == 0) return;
-  const auto blend = [&](const cv::Mat& mask, Colour colour) {
-    for (int y = 0; y < inside.height; ++y) {
-      const auto* a = mask.ptr<std::uint8_t>(inside.y - whole.y + y) + (inside.x - whole.x);
-      auto* out = target_.ptr<cv::Vec3b>(inside.y + y) + inside.x;
-      for (int x = 0; x < inside.width; ++x) {
-        if (a[x] == 0) continue;
-        const int w = a[x];
-        out[x][0] = static_cast<std::uint8_t>((out[x][0] * (255 - w) + colour.b * w + 127) / 255);
-        out[x][1] = static_cast<std::uint8_t>((out[x][1] * (255 - w) + colour.g * w + 127) / 255);
-        out[x][2] = static_cast<std::uint8_t>((out[x][2] * (255 - w) + colour.r * w + 127) / 255);
-      }
-    }
-  };
-  if (style.halo > 0) {
-    const int r = std::max(1, static_cast<int>(std::lround(style.halo * scale_)));
-    cv::Mat wide;
-    cv::dilate(coverage, wide,
-               cv::getStructuringElement(cv::MORPH_ELLIPSE, {2 * r + 1, 2 * r + 1}));
-    blend(wide, kWhite);
-  }
-  blend(coverage, style.colour);
+  const int em = std::max(4, static_cast<int>(std::lround(size * scale())));
+  return (bold ? fonts_.bold : fonts_.regular)->getTextSize(utf8, em, -1, &baseline).width /
+         scale();
 }
 
 cv::Size Canvas::PixelsOf(const Box& box) const {
-  return {static_cast<int>(std::lround(box.width * scale_)),
-          static_cast<int>(std::lround(box.height * scale_))};
+  return {static_cast<int>(std::lround(box.width * scale())),
+          static_cast<int>(std::lround(box.height * scale()))};
 }
 
-void Canvas::Paste(const cv::Mat& bgr, const Box& box) {
-  const cv::Rect where(cv::Point(std::lround(box.x * scale_), std::lround(box.y * scale_)),
-                       bgr.size());
-  const cv::Rect inside = where & cv::Rect(0, 0, image_.cols, image_.rows);
-  if (inside.area() > 0) bgr(inside - where.tl()).copyTo(image_(inside));
-}
-
-cv::Mat Canvas::Finish() const {
-  cv::Mat small;
-  cv::resize(image_, small, {width_px_, height_px_}, 0, 0, cv::INTER_AREA);
-  return small;
-}
-
-void Canvas::Save() const {
-  std::vector<std::uint8_t> bytes;
-  const std::vector<int> settings = {cv::IMWRITE_PNG_COMPRESSION, 3, cv::IMWRITE_JPEG_QUALITY, 94};
-  if (!cv::imencode(LowerSuffix(path_), Finish(), bytes, settings))
-    throw std::runtime_error(path_ + ": cannot encode the picture");
+void Canvas::Save() {
+  std::string bytes;
+  try {
+    bytes = sheet_->Bytes();
+  } catch (const std::exception& e) {
+    throw std::runtime_error(fmt::format("{}: {}", path_, e.what()));
+  }
   std::FILE* file = std::fopen(path_.c_str(), "wb");
   if (!file)
     throw std::runtime_error(fmt::format("{}: cannot write: {}", path_, std::strerror(errno)));

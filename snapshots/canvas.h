@@ -1,24 +1,22 @@
 #pragma once
 
-/// A sheet of paper: anti-aliased strokes, fills and true text. Internal to snapshots/; the only
-/// header here that shows OpenCV.
+/// What pictures are drawn with: strokes, fills, marks and true text, on pixels, PDF or SVG
+/// (sheet.h). Internal to snapshots/; with sheet.h the only header here that shows OpenCV.
 ///
 /// Coordinates are logical: x right, y down, 1 logical unit = 1 px of a 1600 x 1000 picture. A
-/// picture of another size scales everything, text included, by min(width / 1600, height / 1000).
-/// Drawing happens at twice the resolution and is averaged down at the end.
+/// picture of another size scales everything, text included, by min(width / logical width,
+/// height / 1000).
 
-#include <opencv2/core.hpp>
-#include <opencv2/freetype.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "snapshots/palette.h"
+#include "snapshots/sheet.h"
+#include "snapshots/snapshots.h"
 
 namespace regrasp {
-
-using Point2 = cv::Point2d;
-using Box = cv::Rect2d;
 
 struct Pen {
   Colour colour = kInk;
@@ -26,31 +24,27 @@ struct Pen {
   std::vector<double> dash = {};  ///< lengths of stroke and gap in turn; empty = solid
 };
 
-enum class AlignX { kLeft, kCentre, kRight };
-enum class AlignY { kTop, kMiddle, kBaseline };
-
-struct TextStyle {
-  double size = 19;  ///< em height
-  Colour colour = kInk;
-  AlignX align_x = AlignX::kLeft;
-  AlignY align_y = AlignY::kMiddle;
-  bool bold = false;
-  bool upwards =
-      false;        ///< turned by 90 degrees, reading from bottom to top; alignment is along it
-  double halo = 0;  ///< width of a white rim that keeps text readable over drawings
+struct CanvasSize {
+  int width_px = 1600, height_px = 1000;
+  double width_mm = 180;        ///< as printed: of a PDF or SVG, and the resolution a PNG names
+  double logical_width = 1600;  ///< of the sheet; less makes everything on it larger
+  bool with_title = true;
 };
+/// The size that `options` ask for. With a printed width of 165 mm or more the text is at least 7
+/// pt high on paper; below that it shrinks with the picture.
+CanvasSize SizeOf(const PlotOptions& options);
 
 class Canvas {
  public:
-  static constexpr int kOversampling = 2;
-
   /// White. Throws std::runtime_error with `path` for a bad size, suffix or a missing font.
-  Canvas(int width_px, int height_px, std::string path);
+  Canvas(const CanvasSize& size, std::string path);
 
-  double width() const { return width_px_ / unit_; }
-  double height() const { return height_px_ / unit_; }
+  double width() const { return size_.width_px / size_.unit; }
+  double height() const { return size_.height_px / size_.unit; }
   /// Pixels of the finished picture per logical unit.
-  double unit() const { return unit_; }
+  double unit() const { return size_.unit; }
+
+  bool with_title() const { return with_title_; }
 
   /// Everything until Unclip() stays inside `box`.
   void Clip(const Box& box);
@@ -70,29 +64,24 @@ class Canvas {
   /// From tail to head (the tip). Heads shrink with short arrows.
   void Arrow(Point2 tail, Point2 head, const Pen& pen, double halo = 0);
   void Text(Point2 at, const std::string& utf8, const TextStyle& style);
-  double TextWidth(const std::string& utf8, double size, bool bold = false);
+  double TextWidth(const std::string& utf8, double size, bool bold = false) const;
   /// Pastes an 8-bit BGR picture that has been made for this box: PixelsOf(box).
   void Paste(const cv::Mat& bgr, const Box& box);
   cv::Size PixelsOf(const Box& box) const;
   /// Pixels of the drawing surface per logical unit.
-  double scale() const { return scale_; }
+  double scale() const { return size_.unit * kOversampling; }
 
-  /// The picture at its final size, 8-bit BGR.
-  cv::Mat Finish() const;
-  /// Writes the picture. Throws std::runtime_error naming path and cause.
-  void Save() const;
+  /// The finished file, byte by byte. Only once, as Save().
+  std::string Bytes() { return sheet_->Bytes(); }
+  /// Writes the picture. Throws std::runtime_error naming path and cause. Only once.
+  void Save();
 
  private:
-  cv::Point Fixed(Point2 p) const;
-  int Thickness(double width) const;
-  void Stroke(std::span<const Point2> points, const Pen& pen);
-
   std::string path_;
-  int width_px_, height_px_;
-  double unit_, scale_;
-  cv::Mat image_, target_;
-  cv::Point origin_{0, 0};
-  cv::Ptr<cv::freetype::FreeType2> regular_, bold_;
+  bool with_title_;
+  SheetSize size_;
+  Fonts fonts_;
+  std::unique_ptr<Sheet> sheet_;
 };
 
 }  // namespace regrasp

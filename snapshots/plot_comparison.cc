@@ -62,7 +62,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
   }
   if (curves.empty()) throw std::runtime_error(path + ": nothing to draw: no runs were given");
 
-  Canvas canvas(options.width, options.height, path);
+  Canvas canvas(SizeOf(options), path);
   DrawTitle(&canvas,
             options.title.empty()
                 ? fmt::format("Exploring the object's surface with the {} finger", fingers)

@@ -185,7 +185,7 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
   for (const Contact& contact : cloud.points) points.push_back(contact.p_OC);
   const auto fit = FitSphere(points);
 
-  Canvas canvas(options.width, options.height, path);
+  Canvas canvas(SizeOf(options), path);
   const SurfaceMesh mesh = MeshOf(object);
   const auto lines = ShapeLines(mesh);
   DrawTitle(

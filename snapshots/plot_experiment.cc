@@ -60,7 +60,7 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
   const double block = row_height * static_cast<double>(rows.size());
   const int height = static_cast<int>(
       std::max(600.0, top_of_panels + blocks * block + (blocks - 1) * kGap + kBottom));
-  Canvas canvas(1600, height, path);
+  Canvas canvas({.height_px = height}, path);
   const double unit_height = canvas.height(), unit_width = canvas.width();
   DrawTitle(&canvas, picture.title, picture.facts);
   DrawMarkLegend(&canvas, picture, series, true);

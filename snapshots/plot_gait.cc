@@ -108,7 +108,7 @@ Axis AxisOver(std::initializer_list<std::span<const double>> columns, bool from_
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
               const PlotOptions& options, const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(options.width, options.height, path);
+  Canvas canvas(SizeOf(options), path);
   const std::vector<double> t = Times(frames);
   DrawTitle(&canvas, options.title.empty() ? "Finger gait" : options.title,
             Facts(frames, hand, options.object_name));

@@ -157,7 +157,7 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
                   const IncidentNote& note, const HandModel& hand, const PlotOptions& options,
                   const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(options.width, options.height, path);
+  Canvas canvas(SizeOf(options), path);
   const double left = 150, width = canvas.width() - left - 250, bottom = canvas.height() - 90;
 
   double y = 34;

@@ -61,7 +61,7 @@ std::string Gain(std::span<const Frame> frames, int finger) {
 void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
                  const HandModel& hand, const PlotOptions& options, const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(options.width, options.height, path);
+  Canvas canvas(SizeOf(options), path);
   const std::vector<double> t = Times(frames);
   DrawTitle(&canvas, options.title.empty() ? "Manipulability and grasp stability" : options.title,
             Facts(frames, hand, options.object_name));

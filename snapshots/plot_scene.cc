@@ -245,7 +245,7 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
                     path, frame.q.size(), hand.name, hand.num_joints()));
   if (!frame.q.allFinite())
     throw std::runtime_error(path + ": nothing to draw: the frame's joint angles are not finite");
-  Canvas canvas(options.width, options.height, path);
+  Canvas canvas(SizeOf(options), path);
   const bool in_view = ObjectInView(frame, object);
   DrawTitle(&canvas, options.title.empty() ? "Hand, object and contact forces" : options.title,
             Facts({&frame, 1}, hand, object.name));

@@ -25,7 +25,8 @@ void PlotSweep(const ExperimentPicture& picture, const std::string& path) {
   const std::size_t lines = (panels.size() + columns - 1) / columns;
   const std::size_t marks = picture.groups.front().shares.size();
   const auto n = static_cast<double>(columns), m = static_cast<double>(lines);
-  Canvas canvas(1600, static_cast<int>(kTop + m * kPanelHeight + (m - 1) * kGapY + kBottom), path);
+  Canvas canvas(
+      {.height_px = static_cast<int>(kTop + m * kPanelHeight + (m - 1) * kGapY + kBottom)}, path);
   DrawTitle(&canvas, picture.title, picture.facts);
   DrawMarkLegend(&canvas, picture, series, false);
 

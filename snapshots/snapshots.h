@@ -2,7 +2,8 @@
 
 /// Pictures of a run, drawn with OpenCV (which appears in no header of this folder but canvas.h).
 ///
-/// Every function draws one picture into `path`; the suffix chooses the format (.png, .jpg, .jpeg).
+/// Every function draws one picture into `path`; the suffix chooses the format (.png, .jpg, .jpeg,
+/// .pdf, .svg).
 /// The input is what leaves a session, Frame and Event, oldest first and in one run: a picture
 /// never touches the simulator. All of them may be called from any thread; none keeps state.
 ///
@@ -22,10 +23,12 @@
 namespace regrasp {
 
 struct PlotOptions {
-  double last_s = 0;  ///< only the newest seconds of the history; 0 = all [s]
-  int width = 1600;   ///< [px]
-  int height = 1000;  ///< [px]
-  std::string title;  ///< empty: a title that says what the picture shows
+  double last_s = 0;    ///< only the newest seconds of the history; 0 = all [s]
+  int width = 1600;     ///< [px]
+  int height = 1000;    ///< [px]
+  double width_mm = 0;  ///< as printed, from 165 mm on with text of at least 7 pt; 0: for a screen
+  std::string title;    ///< empty: a title that says what the picture shows
+  bool with_title = true;
   std::string
       object_name;  ///< for the caption; empty: left out (PlotContacts and PlotScene know it)
 };

@@ -18,7 +18,10 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
     throw CliError(kUsage, "--show draws for people: it goes with neither --json nor --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " --show");
   }
-  Json answer = context.Call(invocation);
+  Invocation request = invocation;
+  if (const std::string suffix = fs::path(invocation.Text("output")).extension(); !suffix.empty())
+    request.params["file"] = Plain(invocation.params["name"]) + suffix;
+  Json answer = context.Call(request);
   std::string file = Plain(At(answer, "path"));
   if (invocation.Has("output")) {
     fs::path target = invocation.Text("output");
@@ -52,7 +55,7 @@ std::vector<CommandSpec> ResultCommands() {
            {.key = "output",
             .flags = "-o,--output",
             .metavar = "FILE",
-            .help = "copy the picture there",
+            .help = "copy the picture there; the suffix decides: .png, .jpg, .pdf, .svg",
             .default_text = "leave it in the daemon's output directory, print its path"},
            {.key = "show",
             .flags = "--show",

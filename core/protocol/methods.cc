@@ -192,7 +192,8 @@ constexpr std::array kPlot = {
               .values = kPlots},
     ParamSpec{.name = "file",
               .type = kString,
-              .sentence = "file name (not a path), written in the daemon's output directory",
+              .sentence = "file name (not a path), written in the daemon's output directory; its "
+                          "suffix decides: .png, .jpg, .pdf, .svg",
               .default_text = "NAME.png"},
     ParamSpec{.name = "last_s",
               .type = kNumber,
@@ -201,6 +202,17 @@ constexpr std::array kPlot = {
               .min = 0.1,
               .max = 600,
               .default_text = "everything kept"},
+    ParamSpec{.name = "size_m",
+              .type = kNumber,
+              .sentence = "printed width; from 165 mm on text is at least 7 pt high on paper",
+              .unit = "m",
+              .min = 0.05,
+              .max = 1,
+              .default_text = "for a screen"},
+    ParamSpec{.name = "title",
+              .type = kBool,
+              .sentence = "whether the picture has its title and its line of facts",
+              .default_text = "true"},
 };
 constexpr std::array kPush = {
     ParamSpec{.name = "force_n",

@@ -80,8 +80,10 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   const auto job = std::make_shared<Job>();
   job->name = params.String("name");
   job->file = CheckedFileName(params.String("file", job->name + ".png"), "file",
-                              {".png", ".jpg", ".jpeg"}, "quality.png");
+                              {".png", ".jpg", ".jpeg", ".pdf", ".svg"}, "quality.png");
   job->options.last_s = params.Number("last_s", 0);
+  job->options.width_mm = 1e3 * params.Number("size_m", 0);
+  job->options.with_title = params.Bool("title", true);
   job->options.object_name = service.accepted.object->name;
   job->frames = service.history().Frames(job->options.last_s);
   if (job->name == "scene") {

@@ -28,6 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The pixels of what has been drawn.
+cv::Mat Picture(Canvas* canvas) {
+  const std::string png = canvas->Bytes();
+  return cv::imdecode(std::vector<std::uint8_t>(png.begin(), png.end()), cv::IMREAD_COLOR);
+}
+
 /// A folder of this test, removed at its end.
 class Snapshots : public ::testing::Test {
  protected:
@@ -365,10 +371,54 @@ TEST(NiceAxis, EmptyAndInfiniteRangesStillGiveAnAxis) {
   }
 }
 
+/// A big-endian number of a PNG.
+std::uint32_t Number(const std::string& bytes, std::size_t at) {
+  std::uint32_t v = 0;
+  for (std::size_t k = 0; k < 4; ++k) v = v << 8 | static_cast<std::uint8_t>(bytes[at + k]);
+  return v;
+}
+
+TEST(Canvas, PngNamesItsPrintedSize) {
+  const std::string png = Canvas({.width_px = 1600, .width_mm = 80}, "x.png").Bytes();
+  ASSERT_EQ(png.substr(37, 4), "pHYs");  // right after the header
+  EXPECT_EQ(Number(png, 41), 20000u);    // 1600 px on 80 mm, per metre
+  EXPECT_EQ(png[49], 1);
+}
+
+TEST(Canvas, SvgHoldsTextAsTextAndWhatIsDrawnWhereItIs) {
+  Canvas canvas({.width_mm = 88}, "x.svg");
+  canvas.Text({100, 200}, "φ < 1 & ρ", {.size = 20});
+  canvas.Line({1, 2}, {3, 4}, {kBlue, 2});
+  const std::string svg = canvas.Bytes();
+  EXPECT_NE(svg.find(">φ &lt; 1 &amp; ρ</text>"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("points=\"1.00,2.00 3.00,4.00\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find("width=\"88.00mm\""), std::string::npos) << svg;
+}
+
+TEST(Canvas, PdfHasThePrintedSizeAndEmbedsItsFont) {
+  Canvas canvas({.width_mm = 180}, "x.pdf");
+  canvas.Text({100, 200}, "stability", {.size = 20});
+  const std::string pdf = canvas.Bytes();
+  EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+  EXPECT_NE(pdf.find("DejaVuSans"), std::string::npos);
+  EXPECT_NE(pdf.find("/FontFile"), std::string::npos);
+  EXPECT_EQ(pdf.find("/CreationDate"), std::string::npos) << "the same run gives the same file";
+  // 180 mm are 510.236 pt.
+  EXPECT_NE(pdf.find("510.236"), std::string::npos);
+}
+
+TEST(Canvas, PrintedTextIsSevenPointsHigh) {
+  for (const double mm : {165.0, 180.0}) {
+    const Canvas canvas(SizeOf({.width_mm = mm}), "x.pdf");
+    const double pt_per_unit = mm * 72 / 25.4 / canvas.width();
+    EXPECT_GT(15 * pt_per_unit, 7 - 1e-2) << mm;  // 15: the smallest text of all pictures
+  }
+}
+
 TEST(Canvas, CurveLandsWhereTheAxisSays) {
   // 1.3 values per pixel, at sizes with and without scaling of the sheet.
   for (const auto& [width, height] : {std::pair{1600, 1000}, std::pair{800, 500}}) {
-    Canvas canvas(width, height, "x.png");
+    Canvas canvas({width, height}, "x.png");
     const Panel panel{
         {100, 100, 1200, 700}, NiceAxis(0, 10, 5, true, ""), NiceAxis(-1, 1, 5, true, "")};
     std::vector<double> xs, ys;
@@ -377,7 +427,7 @@ TEST(Canvas, CurveLandsWhereTheAxisSays) {
       ys.push_back(0.8 * std::sin(xs.back()));
     }
     DrawCurve(&canvas, panel, xs, ys, {kBlue, 3});
-    const cv::Mat picture = canvas.Finish();
+    const cv::Mat picture = Picture(&canvas);
     for (double x : {0.7, 1.5707963, 4.0, 9.3}) {
       const Point2 at = panel.At(x, 0.8 * std::sin(x)) * canvas.unit();
       double sum = 0, weight = 0;
@@ -396,7 +446,7 @@ TEST(Canvas, CurveLandsWhereTheAxisSays) {
 }
 
 TEST(Canvas, OneSampleSpikeSurvivesDenseData) {
-  Canvas canvas(1600, 1000, "x.png");
+  Canvas canvas({}, "x.png");
   const Panel panel{
       {100, 100, 1200, 700}, NiceAxis(0, 1, 5, true, ""), NiceAxis(0, 1, 5, true, "")};
   std::vector<double> xs, ys(200001, 0.1);
@@ -404,17 +454,17 @@ TEST(Canvas, OneSampleSpikeSurvivesDenseData) {
   ys[77777] = 0.9;
   DrawCurve(&canvas, panel, xs, ys, {kBlue, 2});
   const Point2 top = panel.At(xs[77777], 0.88);
-  EXPECT_GT(
-      Count(canvas.Finish(), kBlue, {static_cast<int>(top.x) - 3, static_cast<int>(top.y), 7, 100}),
-      50);
+  EXPECT_GT(Count(Picture(&canvas), kBlue,
+                  {static_cast<int>(top.x) - 3, static_cast<int>(top.y), 7, 100}),
+            50);
 }
 
 TEST(Canvas, CurvesStayInsideTheirPanel) {
-  Canvas canvas(1600, 1000, "x.png");
+  Canvas canvas({}, "x.png");
   const Panel panel{{400, 300, 600, 300}, NiceAxis(0, 1, 5, true, ""), NiceAxis(0, 1, 5, true, "")};
   const std::vector<double> xs = {-5, 0.2, 0.5, 0.8, 7}, ys = {0.5, 1e9, -1e9, 40, 0.5};
   DrawCurve(&canvas, panel, xs, ys, {kBlue, 6});
-  cv::Mat picture = canvas.Finish();
+  cv::Mat picture = Picture(&canvas);
   EXPECT_GT(Count(picture, kBlue, {400, 300, 600, 300}), 100);
   picture(cv::Rect(400, 300, 600, 300)).setTo(cv::Scalar::all(255));
   EXPECT_EQ(cv::countNonZero(picture.reshape(1) != 255), 0);
@@ -422,9 +472,9 @@ TEST(Canvas, CurvesStayInsideTheirPanel) {
 
 TEST(Canvas, GreekAndMathematicalLettersHaveGlyphs) {
   const auto draw = [](const std::string& text) {
-    Canvas canvas(400, 300, "x.png");
+    Canvas canvas({400, 300}, "x.png");
     canvas.Text({400, 400}, text, {.size = 200});
-    return canvas.Finish();
+    return Picture(&canvas);
   };
   const cv::Mat unknown = draw("\U000E0FFF");  // no font has this one: an empty box, or nothing
   for (const char* text : {"φ", "λ", "∇", "√", "°", "σ", "ε", "ρ", "→", "µ", "⁻", "⁴", "³", "·",
@@ -438,10 +488,10 @@ TEST(Canvas, GreekAndMathematicalLettersHaveGlyphs) {
 
 TEST(Canvas, TextStandsWhereItIsAligned) {
   for (const auto align : {AlignX::kLeft, AlignX::kCentre, AlignX::kRight}) {
-    Canvas canvas(1600, 1000, "x.png");
+    Canvas canvas({}, "x.png");
     canvas.Text({800, 500}, "HHHH", {.size = 100, .align_x = align});
     cv::Mat ink;
-    cv::extractChannel(canvas.Finish(), ink, 0);
+    cv::extractChannel(Picture(&canvas), ink, 0);
     const cv::Rect box = cv::boundingRect(ink != 255);
     const double x = align == AlignX::kLeft    ? box.x
                      : align == AlignX::kRight ? box.br().x

@@ -142,11 +142,11 @@ class Methods:
     def param_get(self, name: str | None = None) -> dict:
         """Values, units, ranges and sources of parameters.
         name: the parameter; one of control.close_force, control.close_speed, control.contact_filter_s,
-            control.contact_from_normal, control.drop_distance, control.force_filter_s,
+            control.contact_from_normal, control.drop_distance, control.fingertip_stiffness, control.force_filter_s,
             control.force_integral_limit, control.free_stiffness, control.friction_estimate, control.grip_force,
             control.grip_ramp_s, control.grip_weight, control.joint_filter_s, control.limit_margin,
-            control.limit_stiffness, control.mass_estimate, control.max_normal_force, control.min_normal_force,
-            control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
+            control.limit_stiffness, control.margin_filter_s, control.mass_estimate, control.max_normal_force,
+            control.min_normal_force, control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
             control.position_error_limit, control.position_integral, control.position_stiffness,
             control.posture_stiffness, control.reapproach_delay_s, control.reapproach_force,
             control.reapproach_speed, control.residual_limit, control.rotation_error_limit,
@@ -173,11 +173,11 @@ class Methods:
     def param_set(self, name: str, value: object) -> dict:
         """Change a parameter.
         name: the parameter; one of control.close_force, control.close_speed, control.contact_filter_s,
-            control.contact_from_normal, control.drop_distance, control.force_filter_s,
+            control.contact_from_normal, control.drop_distance, control.fingertip_stiffness, control.force_filter_s,
             control.force_integral_limit, control.free_stiffness, control.friction_estimate, control.grip_force,
             control.grip_ramp_s, control.grip_weight, control.joint_filter_s, control.limit_margin,
-            control.limit_stiffness, control.mass_estimate, control.max_normal_force, control.min_normal_force,
-            control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
+            control.limit_stiffness, control.margin_filter_s, control.mass_estimate, control.max_normal_force,
+            control.min_normal_force, control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
             control.position_error_limit, control.position_integral, control.position_stiffness,
             control.posture_stiffness, control.reapproach_delay_s, control.reapproach_force,
             control.reapproach_speed, control.residual_limit, control.rotation_error_limit,
@@ -197,7 +197,7 @@ class Methods:
             gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
             gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
             start.joint_sigma_rad, start.object_sigma_m.
-        value: its new value, in the unit and range that param.get tells.
+        value: its new value, of the type and in the range that param.get tells.
         Returns {name, value, unit, min, max, description, source}.
         """
         return self._ask("param.set", {"name": name, "value": value})
@@ -208,14 +208,18 @@ class Methods:
         """
         return self._ask("pause", {})
 
-    def plot(self, name: str, file: str | None = None, last_s: float | None = None) -> dict:
+    def plot(self, name: str, file: str | None = None, last_s: float | None = None, size_m: float | None = None, title: bool | None = None) -> dict:
         """Draw a picture into the output directory.
         name: the picture; one of comparison, contacts, gait, incident, quality, scene.
-        file: file name (not a path), written in the daemon's output directory; left out: NAME.png.
+        file: file name (not a path), written in the daemon's output directory; its suffix decides: .png, .jpg,
+            .pdf, .svg; left out: NAME.png.
         last_s: only the last so many seconds [s]; 0.1 to 600; left out: everything kept.
+        size_m: printed width; from 165 mm on text is at least 7 pt high on paper [m]; 0.05 to 1; left out: for a
+            screen.
+        title: whether the picture has its title and its line of facts; left out: true.
         Returns file (name), path, bytes, tick.
         """
-        return self._ask("plot", {"name": name, "file": file, "last_s": last_s})
+        return self._ask("plot", {"name": name, "file": file, "last_s": last_s, "size_m": size_m, "title": title})
 
     def push(self, force_n: list[float], duration_s: float | None = None) -> dict:
         """Push the object: a disturbance.
