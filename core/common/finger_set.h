@@ -60,6 +60,10 @@ class FingerSet {
   constexpr bool operator==(const FingerSet&) const = default;
   /// Bit i set: finger i is in the set.
   constexpr std::uint32_t bits() const { return bits_; }
+  template <typename V>
+  void Fields(V& v) {
+    v("bits", bits_, v.FingerBits());
+  }
 
  private:
   static constexpr std::uint32_t Bit(int finger) {

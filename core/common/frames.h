@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 
 namespace regrasp {
 
@@ -25,6 +26,14 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
+
+/// An array of zero vectors: Eigen leaves vectors in `{}` unset.
+template <std::size_t n>
+std::array<Vector3d, n> ZeroVectors() {
+  std::array<Vector3d, n> vectors;
+  vectors.fill(Vector3d::Zero());
+  return vectors;
+}
 
 /// A right-handed rotation whose third column is the unit vector `z`. Deterministic; the tangent
 /// axes are otherwise arbitrary. Used for R_WC with z = outward object normal.

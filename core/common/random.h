@@ -4,6 +4,7 @@
 /// a polar normal sampler of our own (std::normal_distribution differs between standard libraries).
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -62,17 +63,16 @@ class RandomStream {
     const double x = Normal(), y = Normal(), z = Normal();
     return {x, y, z};
   }
-  /// Feeds the whole state to a hasher with `void Add(const T&)`.
-  template <typename Hasher>
-  void AddTo(Hasher& hasher) const {
-    for (auto word : s_) hasher.Add(word);
-    hasher.Add(has_spare_);
-    hasher.Add(has_spare_ ? spare_ : 0.0);
+  template <typename V>
+  void Fields(V& v) {
+    v("s", s_);
+    v("spare", spare_);
+    v("has_spare", has_spare_);
   }
 
  private:
   static std::uint64_t Rotl(std::uint64_t x, int k) { return (x << k) | (x >> (64 - k)); }
-  std::uint64_t s_[4]{};
+  std::array<std::uint64_t, 4> s_{};
   double spare_ = 0.0;
   std::uint64_t has_spare_ = 0;
 };

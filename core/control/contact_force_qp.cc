@@ -78,11 +78,4 @@ const FixedVector<Vector3d, kMaxFingers>& ContactForceQp::Solve(const ForceProbl
   return forces_;
 }
 
-void ContactForceQp::AddTo(StateHasher* hasher) const {
-  for (std::size_t i = 0; i < warm_.size(); ++i) {
-    hasher->Add(has_warm_[i]);
-    if (has_warm_[i]) hasher->Add(warm_[i]);
-  }
-}
-
 }  // namespace regrasp

@@ -11,9 +11,9 @@
 
 #include <array>
 
+#include "core/common/fields.h"
 #include "core/common/fixed_vector.h"
 #include "core/common/frames.h"
-#include "core/common/hash.h"
 #include "core/common/limits.h"
 
 namespace regrasp {
@@ -49,10 +49,15 @@ class ContactForceQp {
   double residual() const { return residual_; }
   /// Forgets the warm start.
   void Reset() { *this = ContactForceQp(); }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("warm", warm_);
+    v("has_warm", has_warm_);
+    v("residual", residual_);
+  }
 
  private:
-  std::array<Vector3d, kMaxFingers> warm_{};  // by finger
+  std::array<Vector3d, kMaxFingers> warm_ = ZeroVectors<kMaxFingers>();  // by finger
   std::array<bool, kMaxFingers> has_warm_{};
   FixedVector<Vector3d, kMaxFingers> forces_;
   double residual_ = 0;

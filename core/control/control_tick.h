@@ -23,6 +23,11 @@ struct GaitParameters;
 struct LoadMargins {
   double all = 0;                             ///< with all fingers of the grasp
   std::array<double, kMaxFingers> without{};  ///< without one finger, by finger
+  template <typename V>
+  void Fields(V& v) {
+    v("all", all, kUnbounded);
+    v("without", without, kUnbounded);
+  }
 };
 
 /// A time as a number of ticks of `dt` [s]: the nearest, at least one.

@@ -100,19 +100,14 @@ const Estimate& StateEstimator::Update(const SensorReading& reading,
   return e;
 }
 
-void StateEstimator::AddTo(StateHasher* hasher) const {
-  const Estimate& e = estimate_;
-  hasher->Add(started_);
-  hasher->Add(e.q);
-  hasher->Add(e.p_WO);
-  hasher->Add(e.q_WO);
-  hasher->Add(e.object_scale);
+void StateEstimator::Derive() {
+  Estimate& e = estimate_;
+  ForwardKinematics(*hand_, e.q, &e.kinematics);
   for (std::size_t i = 0; i < e.fingers.size(); ++i) {
-    hasher->Add(contact_[i].p_L);
-    hasher->Add(contact_[i].n_L);
-    hasher->Add(e.fingers[i].force);
-    hasher->Add(e.fingers[i].ticks_in_contact);
-    hasher->Add(e.fingers[i].ticks_without_contact);
+    FingerEstimate& f = e.fingers[i];
+    f.p_WF = FingertipCentre(*hand_, e.kinematics, static_cast<int>(i));
+    f.J = PointJacobian(*hand_, e.kinematics, static_cast<int>(i), f.p_WC);
+    f.manipulability = Manipulability(f.J) / kManipulabilityUnit;
   }
 }
 

@@ -5,8 +5,8 @@
 
 #include <array>
 
+#include "core/common/fields.h"
 #include "core/common/finger_set.h"
-#include "core/common/hash.h"
 #include "core/control/control_parameters.h"
 #include "core/hand/kinematics.h"
 #include "core/quality/grasp.h"
@@ -26,6 +26,18 @@ struct FingerEstimate {
   FingerJacobian J;                  ///< at p_WC, or at the fingertip centre if never in contact
   Vector3d p_WF = Vector3d::Zero();  ///< fingertip centre [m]
   double manipulability = 0;         ///< at p_WC [kManipulabilityUnit]
+
+  /// What is not a function of the others and of the joint angles.
+  template <typename V>
+  void Fields(V& v) {
+    v("in_contact", in_contact);
+    v("ever_in_contact", ever_in_contact);
+    v("ticks_without_contact", ticks_without_contact);
+    v("ticks_in_contact", ticks_in_contact);
+    v("p_WC", p_WC);
+    v("normal_W", normal_W);
+    v("force", force);
+  }
 };
 
 struct Estimate {
@@ -46,12 +58,35 @@ class StateEstimator {
   void Reset() { *this = StateEstimator(*hand_, dt_); }
   const Estimate& Update(const SensorReading& reading, const ControlParameters& parameters);
   const Estimate& estimate() const { return estimate_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    Estimate& e = estimate_;
+    v("started", started_);
+    v("contact", contact_);
+    v("q", e.q);
+    v("fingers", e.fingers);
+    v("p_WO", e.p_WO);
+    v("q_WO", e.q_WO);
+    v("object_scale", e.object_scale);
+    if constexpr (V::kLoads) {
+      if (!started_) return;
+      if (e.q.size() != hand_->num_joints() || e.fingers.size() != hand_->fingers.size())
+        v.Refuse("q", "is of another hand");
+      Derive();
+    }
+  }
 
  private:
   struct ContactFilter {
     Vector3d p_L = Vector3d::Zero(), n_L = Vector3d::UnitZ();  // in the tip link's frame
+    template <typename V>
+    void Fields(V& v) {
+      v("p_L", p_L);
+      v("n_L", n_L);
+    }
   };
+  /// Everything that follows from the joint angles and the contact points.
+  void Derive();
   const HandModel* hand_;
   double dt_;
   bool started_ = false;

@@ -100,13 +100,4 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
   }
 }
 
-void GraspSequence::AddTo(StateHasher* hasher) const {
-  hasher->Add(phase_);
-  hasher->Add(ticks_);
-  hasher->Add(progress_);
-  if (phase_ == Phase::kIdle) return;
-  hasher->Add(q_start_);
-  for (bool touched : touched_) hasher->Add(touched);
-}
-
 }  // namespace regrasp

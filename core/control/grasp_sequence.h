@@ -31,7 +31,14 @@ class GraspSequence {
   bool needs_stand_in() const { return phase_ < Phase::kAlone || phase_ == Phase::kFailed; }
   /// 0 .. 1.
   double progress() const { return progress_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("phase", phase_, Phase::kFailed);
+    v("ticks", ticks_);
+    v("progress", progress_);
+    v("q_start", q_start_);
+    v("touched", touched_);
+  }
 
  private:
   Phase phase_ = Phase::kIdle;

@@ -172,15 +172,4 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
   return torque_;
 }
 
-void HybridController::AddTo(StateHasher* hasher) const {
-  wrench_.AddTo(hasher);
-  qp_.AddTo(hasher);
-  hasher->Add(q_rest_);
-  for (int i = 0; i < hand_->num_fingers(); ++i) {
-    hasher->Add(states_[i].mode);
-    hasher->Add(states_[i].p_ref_W);
-    hasher->Add(states_[i].normal_integral);
-  }
-}
-
 }  // namespace regrasp

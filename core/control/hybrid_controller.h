@@ -40,6 +40,17 @@ struct FingerTask {
   Vector3d v_W = Vector3d::Zero();         ///< kSlide: of the contact over the surface [m/s]
   Vector3d p_target_W = Vector3d::Zero();  ///< kReach [m]
   Vector3d v_target_W = Vector3d::Zero();  ///< kReach: velocity of the target [m/s]
+  template <typename V>
+  void Fields(V& v) {
+    v("mode", mode, FingerMode::kReach);
+    v("q_target", q_target);
+    v("force", force);
+    v("cap", cap);
+    v("grip", grip);
+    v("v_W", v_W);
+    v("p_target_W", p_target_W);
+    v("v_target_W", v_target_W);
+  }
 };
 
 /// One task per finger.
@@ -49,6 +60,11 @@ using FingerTasks = FixedVector<FingerTask, kMaxFingers>;
 struct ObjectMotion {
   Vector3d v_W = Vector3d::Zero();  ///< [m/s]
   Vector3d w_W = Vector3d::Zero();  ///< [rad/s]
+  template <typename V>
+  void Fields(V& v) {
+    v("v_W", v_W);
+    v("w_W", w_W);
+  }
 };
 
 class HybridController {
@@ -72,13 +88,29 @@ class HybridController {
   /// Force on the object that each finger was asked for in the last tick [N].
   const FixedVector<Vector3d, kMaxFingers>& commanded_forces() const { return commanded_; }
   double qp_residual() const { return qp_.residual(); }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("wrench", wrench_);
+    v("qp", qp_);
+    v("states", states_);
+    v("q_rest", q_rest_);
+    v("commanded", commanded_);
+    if constexpr (V::kLoads)
+      if (q_rest_.size() != hand_->num_joints() || commanded_.size() != hand_->fingers.size())
+        v.Refuse("q_rest", "is of another hand");
+  }
 
  private:
   struct FingerState {
     FingerMode mode = FingerMode::kPosture;
     Vector3d p_ref_W = Vector3d::Zero();  // kSlide: reference of the fingertip centre
     double normal_integral = 0;           // kSlide [N]
+    template <typename V>
+    void Fields(V& v) {
+      v("mode", mode, FingerMode::kReach);
+      v("p_ref_W", p_ref_W);
+      v("normal_integral", normal_integral);
+    }
   };
   /// Tip force on the object for a sliding finger; updates its reference.
   Vector3d SlideForce(const FingerEstimate& finger, const FingerTask& task,

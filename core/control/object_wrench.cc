@@ -31,12 +31,4 @@ void ObjectWrench::Update(const Estimate& estimate, const ControlParameters& par
   torque_ = torque_integral_ + parameters.rotation_stiffness * e_r;
 }
 
-void ObjectWrench::AddTo(StateHasher* hasher) const {
-  hasher->Add(p_ref_);
-  hasher->Add(q_ref_);
-  hasher->Add(force_start_);
-  hasher->Add(force_integral_);
-  hasher->Add(torque_integral_);
-}
-
 }  // namespace regrasp

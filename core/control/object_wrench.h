@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/common/hash.h"
+#include "core/common/fields.h"
 #include "core/control/control_parameters.h"
 #include "core/control/estimate.h"
 
@@ -32,7 +32,16 @@ class ObjectWrench {
   const Vector3d& torque() const { return torque_; }  ///< [N m]
   const Vector3d& p_ref() const { return p_ref_; }
   const Quaterniond& q_ref() const { return q_ref_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("p_ref", p_ref_);
+    v("q_ref", q_ref_);
+    v("force_start", force_start_);
+    v("force_integral", force_integral_);
+    v("torque_integral", torque_integral_);
+    v("force", force_);
+    v("torque", torque_);
+  }
 
  private:
   Vector3d p_ref_ = Vector3d::Zero();

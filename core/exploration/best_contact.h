@@ -5,7 +5,6 @@
 /// the object would run away from it.
 
 #include "core/common/frames.h"
-#include "core/common/hash.h"
 
 namespace regrasp {
 
@@ -29,11 +28,12 @@ class BestContact {
   double phi() const { return phi_best_; }
   /// Whether the way back pays: the best phi is more than `gain` times the present one.
   bool worth_returning(double gain) const { return phi_best_ > gain * phi_; }
-  void AddTo(StateHasher* hasher) const {
-    hasher->Add(p_WC_);
-    hasher->Add(phi_);
-    hasher->Add(p_WC_best_);
-    hasher->Add(phi_best_);
+  template <typename V>
+  void Fields(V& v) {
+    v("p_WC", p_WC_);
+    v("p_WC_best", p_WC_best_);
+    v("phi", phi_);
+    v("phi_best", phi_best_);
   }
 
  private:

@@ -18,6 +18,14 @@ class FingerExploration {
     Estimator estimator = Estimator::kLeastSquares;
     std::uint64_t seed = 0;
     int max_cycles = 0;  ///< 0 takes the parameter's
+    template <typename V>
+    void Fields(V& v) {
+      v("finger", finger, v.Finger());
+      v("criterion", criterion, Criterion::kCombined);
+      v("estimator", estimator, Estimator::kLeastSquares);
+      v("seed", seed);
+      v("max_cycles", max_cycles);
+    }
   };
 
   void Start(const Request& request);
@@ -39,7 +47,11 @@ class FingerExploration {
   /// i of Algorithm 1, over all tries.
   int cycles() const { return slide_.cycles(); }
   const GuidedSlide& slide() const { return slide_; }
-  void AddTo(StateHasher* hasher) const { slide_.AddTo(hasher); }
+  template <typename V>
+  void Fields(V& v) {
+    v("request", request_);
+    v("slide", slide_);
+  }
 
  private:
   Request request_;

@@ -34,12 +34,4 @@ Vector3d LeastSquaresEstimator::Gradient(const Matrix3d& R_WC, double ridge) con
   return {g.x(), g.y(), 0.0};
 }
 
-void LeastSquaresEstimator::AddTo(StateHasher* hasher) const {
-  hasher->Add(weight_);
-  hasher->Add(mean_p_);
-  hasher->Add(mean_phi_);
-  hasher->Add(scatter_);
-  hasher->Add(cross_);
-}
-
 }  // namespace regrasp

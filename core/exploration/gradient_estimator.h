@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "core/common/frames.h"
-#include "core/common/hash.h"
 #include "core/exploration/exploration_parameters.h"
 
 namespace regrasp {
@@ -37,7 +36,14 @@ class LeastSquaresEstimator {
   /// Gradient in C [1/m], third component 0. `ridge` [m²]: variance of position below which a
   /// direction counts as not excited and its gradient shrinks to 0.
   Vector3d Gradient(const Matrix3d& R_WC, double ridge) const;
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("weight", weight_);
+    v("mean_p", mean_p_);
+    v("mean_phi", mean_phi_);
+    v("scatter", scatter_);
+    v("cross", cross_);
+  }
 
  private:
   double weight_ = 0;

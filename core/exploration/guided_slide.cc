@@ -222,31 +222,4 @@ bool GuidedSlide::Approach(const ControlTick& tick, const SlideProfile& profile,
   return false;
 }
 
-void GuidedSlide::AddTo(StateHasher* hasher) const {
-  hasher->Add(phase_);
-  hasher->Add(ticks_);
-  if (!active()) return;
-  hasher->Add(stop_);
-  hasher->Add(request_.finger);
-  hasher->Add(request_.criterion);
-  hasher->Add(request_.estimator);
-  hasher->Add(request_.seed);
-  hasher->Add(request_.max_cycles);
-  hasher->Add(request_.without);
-  hasher->Add(request_.gradient_W);
-  hasher->Add(request_.leaves);
-  hasher->Add(on_stability_);
-  hasher->Add(slide_force_);
-  hasher->Add(cap_start_);
-  hasher->Add(waited_);
-  hasher->Add(tries_);
-  hasher->Add(cycles_before_);
-  hasher->Add(phi_);
-  hasher->Add(phi_initial_);
-  hasher->Add(end_);
-  hasher->Add(slid_);
-  best_.AddTo(hasher);
-  algorithm_.AddTo(hasher);
-}
-
 }  // namespace regrasp

@@ -78,6 +78,17 @@ class GuidedSlide {
     int without = -1;    ///< the stability that counts is that without this finger; -1: with all
     Vector3d gradient_W = Vector3d::Zero();  ///< start of Algorithm 1 [1/m]; zero: random
     bool leaves = false;                     ///< goes away after unloading
+    template <typename V>
+    void Fields(V& v) {
+      v("finger", finger, v.Finger());
+      v("criterion", criterion, Criterion::kCombined);
+      v("estimator", estimator, Estimator::kLeastSquares);
+      v("seed", seed);
+      v("max_cycles", max_cycles);
+      v("without", without, v.Finger());
+      v("gradient_W", gradient_W);
+      v("leaves", leaves);
+    }
   };
 
   void Start(const Request& request);
@@ -109,7 +120,31 @@ class GuidedSlide {
   const SurfaceExploration& algorithm() const { return algorithm_; }
   /// i of Algorithm 1, over all tries.
   int cycles() const { return cycles_before_ + algorithm_.cycle(); }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("request", request_);
+    v("phase", phase_, Phase::kDone);
+    v("ticks", ticks_);
+    v("waited", waited_);
+    v("tries", tries_);
+    v("cycles_before", cycles_before_);
+    v("stop", stop_);
+    v("slid", slid_);
+    v("no_surface", no_surface_);
+    v("slide_began", slide_began_);
+    v("slide_ended", slide_ended_);
+    v("on_stability", on_stability_);
+    v("end", end_, End::kObjectMoved);
+    v("slide_force", slide_force_);
+    v("cap_start", cap_start_);
+    v("patience", patience_);
+    v("excess", excess_, kUnbounded);
+    v("phi", phi_);
+    v("phi_initial", phi_initial_);
+    v("phi_final", phi_final_);
+    v("best", best_);
+    v("algorithm", algorithm_);
+  }
 
  private:
   void Enter(Phase phase);

@@ -103,19 +103,4 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   return Status::kRunning;
 }
 
-void SurfaceExploration::AddTo(StateHasher* hasher) const {
-  hasher->Add(estimator_);
-  random_.AddTo(*hasher);
-  least_squares_.AddTo(hasher);
-  hasher->Add(cycle_);
-  hasher->Add(max_cycles_);
-  hasher->Add(small_updates_);
-  hasher->Add(p_WC_start_);
-  for (const Wall& wall : walls_start_) hasher->Add(wall.depth);
-  hasher->Add(p_WC_prev_);
-  hasher->Add(phi_prev_);
-  hasher->Add(gradient_W_);
-  hasher->Add(velocity_W_);
-}
-
 }  // namespace regrasp

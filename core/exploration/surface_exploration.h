@@ -43,6 +43,12 @@ struct Wall {
   double depth = 0;                         ///< how far the contact is beyond it, >= 0 [m]
   bool must_leave =
       false;  ///< a finger that starts beyond it is pushed out, else it may stay there
+  template <typename V>
+  void Fields(V& v) {
+    v("direction_W", direction_W);
+    v("depth", depth);
+    v("must_leave", must_leave);
+  }
 };
 
 class SurfaceExploration {
@@ -72,7 +78,23 @@ class SurfaceExploration {
   /// |P R_WCᵀ gradient| of the last update, what points into walls removed [1/m].
   double gradient_norm() const { return gradient_norm_; }
   int cycle() const { return cycle_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("estimator", estimator_, Estimator::kLeastSquares);
+    v("random", random_);
+    v("least_squares", least_squares_);
+    v("cycle", cycle_);
+    v("max_cycles", max_cycles_);
+    v("updates", updates_);
+    v("small_updates", small_updates_);
+    v("p_WC_start", p_WC_start_);
+    v("p_WC_prev", p_WC_prev_);
+    v("walls_start", walls_start_);
+    v("phi_prev", phi_prev_);
+    v("gradient_W", gradient_W_);
+    v("gradient_norm", gradient_norm_);
+    v("velocity_W", velocity_W_);
+  }
 
  private:
   /// The part of the gradient along which the finger may move, in W [1/m].

@@ -342,29 +342,4 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
   return motion;
 }
 
-void FingerGait::AddTo(StateHasher* hasher) const {
-  hasher->Add(phase_);
-  hasher->Add(ticks_);
-  if (!active()) return;
-  hasher->Add(stop_);
-  hasher->Add(request_.angle_rad);
-  hasher->Add(request_.axis_W);
-  hasher->Add(request_.make_room_for);
-  hasher->Add(waiting_.bits());
-  hasher->Add(turned_before_);
-  hasher->Add(turned_in_cycle_);
-  hasher->Add(cycles_);
-  hasher->Add(regrasps_);
-  hasher->Add(idle_cycles_);
-  search_.AddTo(hasher);
-  for (const Vector3d& found : found_) hasher->Add(found);
-  for (const Vector3d& gradient : gradient_) hasher->Add(gradient);
-  for (double lead : lead_) hasher->Add(lead);
-  for (const StanceContact& contact : home_.stance) hasher->Add(contact.p_OF);
-  hasher->Add(margin_wanted_);
-  hasher->Add(sought_);
-  manipulation_.AddTo(hasher);
-  regrasp_.AddTo(hasher);
-}
-
 }  // namespace regrasp

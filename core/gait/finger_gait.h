@@ -35,6 +35,15 @@ class FingerGait {
     std::uint64_t seed = 0;
     /// >= 0: no rotation; the others shift their contacts until this finger may leave (S_F).
     int make_room_for = -1;
+    template <typename V>
+    void Fields(V& v) {
+      v("angle_rad", angle_rad);
+      v("continuous", continuous);
+      v("axis_W", axis_W);
+      v("speed_rad_s", speed_rad_s);
+      v("seed", seed);
+      v("make_room_for", make_room_for, v.Finger());
+    }
   };
   /// What happened in the last Update.
   struct Happened {
@@ -44,6 +53,19 @@ class FingerGait {
     bool aborted = false;       ///< a regrasp was broken off
     double error_position = 0, error_rotation = 0;  ///< object against reference, then [m, rad]
     bool regrasp_began = false, explore_began = false, explore_ended = false, regrasp_ended = false;
+    template <typename V>
+    void Fields(V& v) {
+      v("changed", changed);
+      v("refused_finger", refused_finger, v.Finger());
+      v("refused_margin", refused_margin, kUnbounded);
+      v("aborted", aborted);
+      v("error_position", error_position);
+      v("error_rotation", error_rotation);
+      v("regrasp_began", regrasp_began);
+      v("explore_began", explore_began);
+      v("explore_ended", explore_ended);
+      v("regrasp_ended", regrasp_ended);
+    }
   };
 
   /// The present contacts are the gait's first ones.
@@ -71,7 +93,36 @@ class FingerGait {
   int regrasps() const { return regrasps_; }
   /// Why it failed: one plain sentence, empty unless kFailed.
   const char* error() const { return error_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("request", request_);
+    v("phase", phase_, GaitPhase::kFailed);
+    v("ticks", ticks_);
+    v("stop", stop_);
+    v("sign", sign_);
+    v("order", order_);
+    v("home", home_);
+    v("first_stance", first_stance_);
+    v("margin_wanted", margin_wanted_);
+    v("searches", searches_);
+    v("search", search_);
+    v("found", found_);
+    v("gradient", gradient_);
+    v("lead", lead_);
+    v("manipulation", manipulation_);
+    v("regrasp", regrasp_);
+    v("waiting", waiting_);
+    v("turned_before", turned_before_);
+    v("turned_in_cycle", turned_in_cycle_);
+    v("idle_cycles", idle_cycles_);
+    v("refused_finger", refused_finger_, v.Finger());
+    v("sought", sought_);
+    v("refused_margin", refused_margin_, kUnbounded);
+    v("cycles", cycles_);
+    v("regrasps", regrasps_);
+    v("happened", happened_);
+    v("error", error_);
+  }
 
  private:
   void Enter(GaitPhase phase);
@@ -109,9 +160,9 @@ class FingerGait {
   StanceSearch search_;
   // Exploring: where Algorithm 1 ended the last times, from the first contact, in W axes [m]. The
   // next exploration of the finger goes there from the first contact, then Algorithm 1 takes over.
-  std::array<Vector3d, kMaxFingers> found_{};
+  std::array<Vector3d, kMaxFingers> found_ = ZeroVectors<kMaxFingers>();
   // The gradient with which its last exploration ended, in W [1/m]; zero: none yet.
-  std::array<Vector3d, kMaxFingers> gradient_{};
+  std::array<Vector3d, kMaxFingers> gradient_ = ZeroVectors<kMaxFingers>();
   // By how much each finger's target is turned back about the axis: half of what a motion that
   // ended at this finger's limit still wanted is added, so that it has more way the next time
   // [rad].

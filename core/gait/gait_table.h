@@ -42,6 +42,11 @@ int OpposingFinger(const Estimate& estimate, FingerSet fingers);
 struct GaitStep {
   int finger = -1;
   GaitObjective objective = GaitObjective::kManipulability;
+  template <typename V>
+  void Fields(V& v) {
+    v("finger", finger, v.Finger());
+    v("objective", objective, GaitObjective::kStabilityWithoutNext);
+  }
 };
 using GaitOrder = FixedVector<GaitStep, kMaxFingers>;
 

@@ -89,13 +89,4 @@ void Hop::Across(const ControlTick& tick, const FingerEstimate& finger, const Ta
   }
 }
 
-void Hop::AddTo(StateHasher* hasher) const {
-  hasher->Add(phase_);
-  if (!active()) return;
-  hasher->Add(late_ticks_);
-  hasher->Add(p_target_W_);
-  hasher->Add(normal_W_);
-  hasher->Add(path_);
-}
-
 }  // namespace regrasp

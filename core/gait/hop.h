@@ -36,7 +36,14 @@ class Hop {
   bool active() const {
     return phase_ == Phase::kLift || phase_ == Phase::kAcross || phase_ == Phase::kDown;
   }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("phase", phase_, Phase::kBlocked);
+    v("late_ticks", late_ticks_);
+    v("p_target_W", p_target_W_);
+    v("normal_W", normal_W_);
+    v("path", path_);
+  }
 
  private:
   void Enter(Phase phase);

@@ -124,20 +124,4 @@ ObjectMotion LocalManipulation::Update(const ControlTick& tick, const ObjectWren
   return motion;
 }
 
-void LocalManipulation::AddTo(StateHasher* hasher) const {
-  hasher->Add(per_path_.v_W);
-  hasher->Add(per_path_.w_W);
-  hasher->Add(length_);
-  hasher->Add(speed_max_);
-  hasher->Add(acceleration_);
-  hasher->Add(travelled_);
-  hasher->Add(speed_);
-  hasher->Add(policy_);
-  hasher->Add(at_limit_.bits());
-  hasher->Add(stop_);
-  hasher->Add(at_limit_at_first_.bits());
-  hasher->Add(waited_);
-  hasher->Add(end_);
-}
-
 }  // namespace regrasp

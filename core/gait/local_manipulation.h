@@ -51,7 +51,23 @@ class LocalManipulation {
   double length() const { return length_; }        ///< of the path [rad, or m for a shift]
   double travelled() const { return travelled_; }  ///< by the reference since Start, same unit
   double speed() const { return speed_; }          ///< along the path [1/s]
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("per_path", per_path_);
+    v("length", length_);
+    v("speed_max", speed_max_);
+    v("acceleration", acceleration_);
+    v("travelled", travelled_);
+    v("speed", speed_);
+    v("policy", policy_, AtLimit::kYields);
+    v("stop", stop_);
+    v("at_limit", at_limit_);
+    v("at_limit_at_first", at_limit_at_first_);
+    v("limited_finger", limited_finger_, v.Finger());
+    v("waited", waited_);
+    v("end", end_, End::kStopped);
+    v("end_finger", end_finger_, v.Finger());
+  }
 
  private:
   End FindEnd(const ControlTick& tick, const Home& home);

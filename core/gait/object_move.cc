@@ -62,15 +62,4 @@ ObjectMotion ObjectMove::Update(const ControlTick& tick, HybridController* contr
   return {};
 }
 
-void ObjectMove::AddTo(StateHasher* hasher) const {
-  hasher->Add(active_);
-  if (!active_) return;
-  hasher->Add(stop_);
-  hasher->Add(home_.p_WO);
-  for (const StanceContact& contact : home_.stance) hasher->Add(contact.p_OC);
-  for (double manipulability : home_.manipulability) hasher->Add(manipulability);
-  hasher->Add(rest_ticks_);
-  manipulation_.AddTo(hasher);
-}
-
 }  // namespace regrasp

@@ -33,7 +33,14 @@ class ObjectMove {
   bool stopped() const { return stop_; }  ///< Stop() was called
   double progress() const { return manipulation_.travelled() / manipulation_.length(); }  ///< 0..1
   const LocalManipulation& manipulation() const { return manipulation_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("active", active_);
+    v("stop", stop_);
+    v("manipulation", manipulation_);
+    v("home", home_);
+    v("rest_ticks", rest_ticks_);
+  }
 
  private:
   /// Of the fingers at a limit the one that the grasp can best do without, or -1.

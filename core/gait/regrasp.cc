@@ -116,15 +116,4 @@ bool Regrasp::SlideOver(const ControlTick& tick, const Target& target, FingerTas
          ++slide_ticks_ * tick.dt > parameters.slide_limit_s;
 }
 
-void Regrasp::AddTo(StateHasher* hasher) const {
-  slide_.AddTo(hasher);
-  if (!active()) return;
-  hasher->Add(request_.hop);
-  hasher->Add(request_.explore);
-  hasher->Add(request_.disc_share);
-  hasher->Add(aborted_);
-  hasher->Add(slide_ticks_);
-  hop_.AddTo(hasher);
-}
-
 }  // namespace regrasp

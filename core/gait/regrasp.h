@@ -32,6 +32,13 @@ class Regrasp {
     bool hop = true;             ///< otherwise it slides
     bool explore = false;
     double disc_share = 1;  ///< explore: of gait.disc_radius, within which the new contact may be
+    template <typename V>
+    void Fields(V& v) {
+      v("slide", slide);
+      v("hop", hop);
+      v("explore", explore);
+      v("disc_share", disc_share);
+    }
   };
   /// Where the finger shall go, in W; follows the object's reference position.
   struct Target {
@@ -57,7 +64,14 @@ class Regrasp {
   /// Found no surface to stand on.
   bool lost() const { return slide_.no_surface(); }
   const GuidedSlide& slide() const { return slide_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("request", request_);
+    v("aborted", aborted_);
+    v("slide_ticks", slide_ticks_);
+    v("slide", slide_);
+    v("hop", hop_);
+  }
 
  private:
   /// Away from its old contact: one tick of the way to the target.

@@ -15,6 +15,12 @@ struct StanceContact {
   Vector3d p_OC = Vector3d::Zero();       ///< contact [m]
   Vector3d p_OF = Vector3d::Zero();       ///< fingertip centre [m]
   Vector3d normal_W = Vector3d::UnitZ();  ///< outward
+  template <typename V>
+  void Fields(V& v) {
+    v("p_OC", p_OC);
+    v("p_OF", p_OF);
+    v("normal_W", normal_W);
+  }
 };
 /// One contact per finger of the hand.
 using Stance = FixedVector<StanceContact, kMaxFingers>;
@@ -29,6 +35,12 @@ struct Home {
   Vector3d p_WO = Vector3d::Zero();                  ///< object reference [m]
   Stance stance;                                     ///< about that reference
   std::array<double, kMaxFingers> manipulability{};  ///< [kManipulabilityUnit]
+  template <typename V>
+  void Fields(V& v) {
+    v("p_WO", p_WO);
+    v("stance", stance);
+    v("manipulability", manipulability);
+  }
 };
 /// The present contacts of every finger, about the object's present reference.
 Home MakeHome(const Estimate& estimate, const ObjectWrench& wrench);

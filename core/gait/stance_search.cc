@@ -40,11 +40,4 @@ void StanceSearch::Step(const Vector3d& weight, double mu, double torque_scale, 
   best_ = trial;
 }
 
-void StanceSearch::AddTo(StateHasher* hasher) const {
-  hasher->Add(evaluations_);
-  hasher->Add(margin_);
-  for (const StanceContact& contact : best_) hasher->Add(contact.p_OC);
-  random_.AddTo(*hasher);
-}
-
 }  // namespace regrasp

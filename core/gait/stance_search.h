@@ -22,7 +22,17 @@ class StanceSearch {
   const Stance& stance() const { return best_; }
   double margin() const { return margin_; }  ///< of stance(); < 0 before the first step [N]
   int evaluations() const { return evaluations_; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("first", first_);
+    v("best", best_);
+    v("fingers", fingers_);
+    v("without", without_, v.Finger());
+    v("max_shift", max_shift_);
+    v("margin", margin_, kUnbounded);
+    v("evaluations", evaluations_);
+    v("random", random_);
+  }
 
  private:
   Stance first_, best_;

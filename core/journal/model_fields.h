@@ -10,15 +10,7 @@ namespace regrasp {
 
 template <typename A>
 void Fields(A& a, NoiseLevels& n) {
-  a("position_m", n.position_m);
-  a("normal_rad", n.normal_rad);
-  a("force_n", n.force_n);
-  a("joint_rad", n.joint_rad);
-  a("object_position_m", n.object_position_m);
-  a("object_rotation_rad", n.object_rotation_rad);
-  a("taxel_pitch_m", n.taxel_pitch_m);
-  a("object_rate_hz", n.object_rate_hz);
-  a("object_delay_frames", n.object_delay_frames);
+  n.Fields(a);
 }
 
 template <typename A>

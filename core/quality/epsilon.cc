@@ -104,15 +104,6 @@ double EpsilonSolver::result() const { return impl_->bound; }
 double EpsilonSolver::lower_bound() const { return impl_->bound; }
 bool EpsilonSolver::exact() const { return impl_->exact; }
 
-void EpsilonSolver::AddTo(StateHasher& hasher) const {
-  hasher.Add(impl_->done);
-  hasher.Add(impl_->bound);
-  if (impl_->done) return;
-  hasher.Add(impl_->attempt);
-  hasher.Add(impl_->hull.facets_built());
-  for (const Wrench& wrench : impl_->wrenches) hasher.Add(wrench);
-}
-
 double WrenchHullVolume(std::span<const GraspContact> contacts, double torque_scale, int edges) {
   std::vector<Wrench> wrenches;
   AppendPrimitiveWrenches(contacts, torque_scale, edges, wrenches);

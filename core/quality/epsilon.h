@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 
-#include "core/common/hash.h"
 #include "core/quality/grasp.h"
 
 namespace regrasp {
@@ -53,8 +52,6 @@ class EpsilonSolver {
   /// bound; exact() is then false.
   double lower_bound() const;
   bool exact() const;
-  /// Adds the state of the computation under way: it decides at which tick a result appears.
-  void AddTo(StateHasher& hasher) const;
 
  private:
   struct Impl;

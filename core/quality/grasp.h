@@ -12,6 +12,12 @@ struct GraspContact {
   Vector3d position = Vector3d::Zero();  ///< from the centre about which moments are taken [m]
   Vector3d inward_normal = Vector3d::UnitZ();  ///< unit, into the object
   double mu = 0.8;                             ///< friction coefficient
+  template <typename V>
+  void Fields(V& v) {
+    v("position", position);
+    v("inward_normal", inward_normal);
+    v("mu", mu);
+  }
 };
 
 /// Contacts of one grasp; larger grasps (evaluate FILE) pass a std::vector of the same element.

@@ -20,6 +20,18 @@ struct NoiseLevels {
   double object_rate_hz = 0;    ///< > 0: the object pose is sampled and held at this rate
   int object_delay_frames = 0;  ///< frames at object_rate_hz by which the pose is late, 0 .. 7
   bool operator==(const NoiseLevels&) const = default;
+  template <typename V>
+  void Fields(V& v) {
+    v("position_m", position_m);
+    v("normal_rad", normal_rad);
+    v("force_n", force_n);
+    v("joint_rad", joint_rad);
+    v("object_position_m", object_position_m);
+    v("object_rotation_rad", object_rotation_rad);
+    v("taxel_pitch_m", taxel_pitch_m);
+    v("object_rate_hz", object_rate_hz);
+    v("object_delay_frames", object_delay_frames);
+  }
 };
 
 /// Names in increasing order of noise: off, fine, paper, coarse, taxel.

@@ -17,6 +17,13 @@ struct FingertipReading {
   Vector3d normal_W =
       Vector3d::UnitZ();  ///< outward object normal, unit; meaningless without contact
   double force = 0;       ///< normal force, >= 0 [N]
+  template <typename V>
+  void Fields(V& v) {
+    v("in_contact", in_contact);
+    v("p_WC", p_WC);
+    v("normal_W", normal_W);
+    v("force", force);
+  }
 };
 
 struct SensorReading {
@@ -25,6 +32,14 @@ struct SensorReading {
   JointVector q;                                          ///< joint angles [rad]
   Vector3d p_WO = Vector3d::Zero();                       ///< object position [m]
   Quaterniond q_WO = Quaterniond::Identity();             ///< object orientation
+  template <typename V>
+  void Fields(V& v) {
+    v("tick", tick);
+    v("fingertips", fingertips);
+    v("q", q);
+    v("p_WO", p_WO);
+    v("q_WO", q_WO);
+  }
 };
 
 }  // namespace regrasp

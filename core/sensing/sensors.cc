@@ -154,33 +154,4 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   reading_.q_WO = reported.q;
 }
 
-void Sensors::AddTo(StateHasher* hasher) const {
-  for (const RandomStream* stream :
-       {&position_stream_, &normal_stream_, &force_stream_, &joint_stream_, &pose_position_stream_,
-        &pose_rotation_stream_})
-    stream->AddTo(*hasher);
-  for (const double level :
-       {levels_.position_m, levels_.normal_rad, levels_.force_n, levels_.joint_rad,
-        levels_.object_position_m, levels_.object_rotation_rad, levels_.taxel_pitch_m,
-        levels_.object_rate_hz})
-    hasher->Add(level);
-  hasher->Add(levels_.object_delay_frames);
-  hasher->Add(last_sample_);
-  hasher->Add(last_pose_frame_);
-  hasher->Add(num_pose_frames_);
-  for (int i = 0; i < num_pose_frames_; ++i) {
-    hasher->Add(pose_frames_[i].p);
-    hasher->Add(pose_frames_[i].q);
-  }
-  for (const FingertipReading& tip : reading_.fingertips) {
-    hasher->Add(tip.in_contact);
-    hasher->Add(tip.p_WC);
-    hasher->Add(tip.normal_W);
-    hasher->Add(tip.force);
-  }
-  hasher->Add(reading_.q);
-  hasher->Add(reading_.p_WO);
-  hasher->Add(reading_.q_WO);
-}
-
 }  // namespace regrasp

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/common/fields.h"
 #include "core/common/random.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/kinematics.h"
@@ -52,13 +53,35 @@ class Sensors {
   /// frames old. Until that many frames exist the oldest one is reported. The delay needs a rate.
   const SensorReading& Read(std::int64_t tick, const WorldState& truth);
 
-  /// Feeds streams, levels, delay line and held values to the hasher.
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("levels", levels_);
+    v("position_stream", position_stream_);
+    v("normal_stream", normal_stream_);
+    v("force_stream", force_stream_);
+    v("joint_stream", joint_stream_);
+    v("pose_position_stream", pose_position_stream_);
+    v("pose_rotation_stream", pose_rotation_stream_);
+    v("last_sample", last_sample_, kCountOrNone);
+    v("pose_frames", pose_frames_);
+    v("num_pose_frames", num_pose_frames_, FieldRange{0, kMaxPoseDelay + 1.0});
+    v("last_pose_frame", last_pose_frame_, kCountOrNone);
+    v("reading", reading_);
+    if constexpr (V::kLoads)
+      if (reading_.q.size() != hand_->num_joints() ||
+          reading_.fingertips.size() != hand_->fingers.size())
+        v.Refuse("reading", "is of another hand");
+  }
 
  private:
   struct Pose {
     Vector3d p = Vector3d::Zero();
     Quaterniond q = Quaterniond::Identity();
+    template <typename V>
+    void Fields(V& v) {
+      v("p", p);
+      v("q", q);
+    }
   };
   void ReadFingertips(const WorldState& truth);
   void ReadObject(std::int64_t tick, const WorldState& truth);

@@ -141,9 +141,8 @@ Verdict Session::Impl::Apply(const Command& command) {
       if (job.id == command.job) StopJob();
       break;
     case CommandType::kNoise:
-      noise = command.noise;
-      sensors.SetNoise(noise);
-      log.Emit(tick, EventKind::kNoise, -1, 0, "noise %s", NoiseName(noise).data());
+      sensors.SetNoise(command.noise);
+      log.Emit(tick, EventKind::kNoise, -1, 0, "noise %s", NoiseName(command.noise).data());
       break;
     case CommandType::kPush:
       Push(command);

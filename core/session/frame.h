@@ -58,6 +58,16 @@ struct StabilityFrame {
   double threshold = 0;  ///< below it, `switched` maximises stability instead of manipulability
   double min_singular_value = 0, epsilon = 0, sqrt_det = 0, isotropy = 0;
   double load_margin = 0;  ///< rho of all fingers in contact [N]
+  template <typename V>
+  void Fields(V& v) {
+    v("active", active);
+    v("threshold", threshold);
+    v("min_singular_value", min_singular_value);
+    v("epsilon", epsilon);
+    v("sqrt_det", sqrt_det);
+    v("isotropy", isotropy);
+    v("load_margin", load_margin, kUnbounded);
+  }
 };
 
 /// State of Algorithm 1 while a finger explores.

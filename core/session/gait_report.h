@@ -13,6 +13,10 @@ class GaitReport {
   void Report(const FingerGait& gait, const ActivityContext& context);
   /// The newest regrasp; complete once its event has come.
   const RegraspRecord& last() const { return last_; }
+  template <typename V>
+  void Fields(V& v) {
+    v("last", last_);
+  }
 
  private:
   void Regrasped(const Regrasp& regrasp, const ActivityContext& context);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/common/fields.h"
 #include "core/session/command.h"
 
 namespace regrasp {
@@ -55,6 +56,21 @@ struct ExploreResult {
          phi_true_final = 0;  ///< noise-free, from the simulator, for judging only
   double path_length_m = 0;   ///< of the true contact point over the object
   std::uint64_t seed = 0;
+  template <typename V>
+  void Fields(V& v) {
+    v("finger", finger, v.Finger());
+    v("criterion", criterion, Criterion::kCombined);
+    v("estimator", estimator, Estimator::kLeastSquares);
+    v("converged", converged);
+    v("reason", reason, ExploreReason::kObjectMoved);
+    v("cycles", cycles);
+    v("phi_initial", phi_initial);
+    v("phi_final", phi_final);
+    v("phi_true_initial", phi_true_initial);
+    v("phi_true_final", phi_true_final);
+    v("path_length_m", path_length_m);
+    v("seed", seed);
+  }
 };
 
 struct RotateResult {
@@ -66,6 +82,17 @@ struct RotateResult {
   double max_position_error_m = 0;
   double max_tilt_rad = 0;
   double sim_time_s = 0;
+  template <typename V>
+  void Fields(V& v) {
+    v("angle_rad", angle_rad);
+    v("turns", turns);
+    v("gait_cycles", gait_cycles);
+    v("regrasps", regrasps);
+    v("dropped", dropped);
+    v("max_position_error_m", max_position_error_m);
+    v("max_tilt_rad", max_tilt_rad);
+    v("sim_time_s", sim_time_s);
+  }
 };
 
 /// What was wanted, and what became of it by the truth (noise-free, from the simulator, for judging
@@ -78,6 +105,19 @@ struct MoveResult {
   int end_finger = -1;  ///< the finger that could not go on, or -1
   double max_position_error_m = 0, max_rotation_error_rad = 0;  ///< object against its reference
   double sim_time_s = 0;
+  template <typename V>
+  void Fields(V& v) {
+    v("offset_m", offset_m);
+    v("rotation_rad", rotation_rad);
+    v("achieved_offset_m", achieved_offset_m);
+    v("achieved_rotation_rad", achieved_rotation_rad);
+    v("reached", reached);
+    v("end", end, MoveEnd::kDropped);
+    v("end_finger", end_finger, v.Finger());
+    v("max_position_error_m", max_position_error_m);
+    v("max_rotation_error_rad", max_rotation_error_rad);
+    v("sim_time_s", sim_time_s);
+  }
 };
 
 /// One regrasp of the finger gait, judged by the truth (noise-free phi; stability or
@@ -90,6 +130,16 @@ struct RegraspRecord {
   double phi_before = 0;  ///< before the finger left
   double phi_start = 0;   ///< where Algorithm 1 began; phi_before without exploration
   double phi_after = 0;   ///< when the finger was back in the grasp
+  template <typename V>
+  void Fields(V& v) {
+    v("finger", finger, v.Finger());
+    v("criterion", criterion, Criterion::kCombined);
+    v("on_stability", on_stability);
+    v("aborted", aborted);
+    v("phi_before", phi_before);
+    v("phi_start", phi_start);
+    v("phi_after", phi_after);
+  }
 };
 
 struct JobRecord {
@@ -103,6 +153,19 @@ struct JobRecord {
   ExploreResult explore;  ///< method explore only
   RotateResult rotate;    ///< method rotate only
   MoveResult move;        ///< method move only
+  template <typename V>
+  void Fields(V& v) {
+    if constexpr (!V::kHashes) v("id", id);  // a name: a branch may give it another one
+    v("method", method, JobMethod::kRestore);
+    v("state", state, JobState::kCancelled);
+    v("error", error);
+    v("progress", progress);
+    v("start_tick", start_tick, kCountOrNone);
+    v("end_tick", end_tick, kCountOrNone);
+    v("explore", explore);
+    v("rotate", rotate);
+    v("move", move);
+  }
 };
 
 }  // namespace regrasp

@@ -24,9 +24,4 @@ double Judge::Phi(Criterion criterion, int finger, FingerSet fingers, const Para
       .phi;
 }
 
-void Judge::AddTo(StateHasher* hasher) const {
-  sensors_.AddTo(hasher);
-  estimator_.AddTo(hasher);
-}
-
 }  // namespace regrasp

@@ -20,7 +20,11 @@ class Judge {
   /// What exploration maximises, by the truth last looked at. `fingers`: of the grasp.
   double Phi(Criterion criterion, int finger, FingerSet fingers, const Parameters& parameters,
              bool on_stability) const;
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("sensors", sensors_);
+    v("estimator", estimator_);
+  }
 
  private:
   Sensors sensors_;  // without noise

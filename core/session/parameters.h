@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/common/fields.h"
 #include "core/common/frames.h"
 #include "core/control/control_parameters.h"
 #include "core/exploration/exploration_parameters.h"
@@ -34,6 +35,8 @@ struct Parameters {
   ControlParameters control;
   ExplorationParameters exploration;
   GaitParameters gait;
+  template <typename V>
+  void Fields(V& v);
 };
 
 /// How a parameter's value is written, and what it may be.
@@ -71,5 +74,15 @@ Parameters DefaultParameters(const LoadedScenario& model);
 std::span<const ParameterInfo> ParameterTable();
 /// Index into the table, or -1.
 int FindParameter(std::string_view name);
+
+template <typename V>
+void Parameters::Fields(V& v) {
+  for (const ParameterInfo& info : ParameterTable()) {
+    Vector3d value = info.get(*this);
+    for (int k = 0; k < info.size(); ++k)
+      v(info.name.data(), value[k], FieldRange{info.min, info.max});
+    if constexpr (V::kWrites) info.set(this, value);
+  }
+}
 
 }  // namespace regrasp

@@ -58,31 +58,32 @@ void QualityMonitor::SmoothMargins(double gain) {
     margins_.without[i] += gain * (load_margin_without_[i] - margins_.without[i]);
 }
 
+void QualityMonitor::BeginEpsilon() {
+  epsilon_.Begin({epsilon_grasp_.data(), epsilon_grasp_.size()}, epsilon_scale_, kEpsilonEdges);
+}
+
+void QualityMonitor::RepeatEpsilon() {
+  if (!epsilon_begun_) return;
+  BeginEpsilon();
+  for (int k = 0; k < epsilon_steps_; ++k) epsilon_.Step(kEpsilonFacets);
+}
+
 void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale) {
   ++epsilon_ticks_;
   if (!epsilon_begun_) {
     if (epsilon_ticks_ < kEpsilonInterval) return;
-    epsilon_.Begin({grasp.data(), grasp.size()}, torque_scale, kEpsilonEdges);
+    epsilon_grasp_ = grasp;
+    epsilon_scale_ = torque_scale;
+    epsilon_steps_ = 0;
     epsilon_begun_ = true;
     epsilon_ticks_ = 0;
+    BeginEpsilon();
     return;
   }
+  ++epsilon_steps_;
   if (!epsilon_.Step(kEpsilonFacets)) return;
   stability_.epsilon = epsilon_.result();
   epsilon_begun_ = false;
-}
-
-void QualityMonitor::AddTo(StateHasher* hasher) const {
-  hasher->Add(tick_);
-  hasher->Add(turn_);
-  hasher->Add(stability_.load_margin);
-  for (double rho : load_margin_without_) hasher->Add(rho);
-  hasher->Add(margins_.all);
-  for (double rho : margins_.without) hasher->Add(rho);
-  hasher->Add(stability_.epsilon);
-  hasher->Add(epsilon_begun_);
-  hasher->Add(epsilon_ticks_);
-  if (epsilon_begun_) epsilon_.AddTo(*hasher);
 }
 
 }  // namespace regrasp

@@ -15,9 +15,10 @@ namespace regrasp {
 
 class QualityMonitor {
  public:
-  static constexpr int kMarginInterval = 5;    ///< ticks from one load margin to the next
-  static constexpr int kEpsilonFacets = 60;    ///< facets per tick (about 0.1 us each)
-  static constexpr int kEpsilonEdges = 8;      ///< of the friction pyramid
+  static constexpr int kMarginInterval = 5;       ///< ticks from one load margin to the next
+  static constexpr int kEpsilonFacets = 60;       ///< facets per tick (about 0.1 us each)
+  static constexpr int kEpsilonEdges = 8;         ///< of the friction pyramid
+  static constexpr int kMaxEpsilonSteps = 10000;  ///< more are never needed
   static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
 
   /// `fingers`: those that form the grasp. gravity_W [m/s²]; dt [s].
@@ -30,21 +31,41 @@ class QualityMonitor {
   const LoadMargins& margins() const { return margins_; }
   /// rho of the grasp without this finger, as last computed [N].
   double load_margin_without(int finger) const { return load_margin_without_[finger]; }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("stability", stability_);
+    v("load_margin_without", load_margin_without_, kUnbounded);
+    v("margins", margins_);
+    v("tick", tick_, FieldRange{0, kMarginInterval});
+    v("turn", turn_, FieldRange{0, kMaxFingers});
+    v("epsilon_grasp", epsilon_grasp_);
+    v("epsilon_scale", epsilon_scale_, FieldRange{1e-6, 1e3});
+    v("epsilon_begun", epsilon_begun_);
+    v("epsilon_steps", epsilon_steps_, FieldRange{0, kMaxEpsilonSteps});
+    v("epsilon_ticks", epsilon_ticks_);
+    if constexpr (V::kLoads) RepeatEpsilon();
+  }
 
  private:
   void UpdateMargin(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
                     const ControlParameters& parameters);
   void SmoothMargins(double gain);
   void UpdateEpsilon(const Grasp& grasp, double torque_scale);
+  void BeginEpsilon();
+  /// Brings the solver to where a loaded state had it.
+  void RepeatEpsilon();
 
   StabilityFrame stability_;
   std::array<double, kMaxFingers> load_margin_without_{};
   LoadMargins margins_;
   int tick_ = 0;  // counts up to kMarginInterval
   int turn_ = 0;  // whose load margin comes next; the number of fingers: the whole grasp's
+  // The solver's state is what it began with and how far it has come.
   EpsilonSolver epsilon_;
+  Grasp epsilon_grasp_;
+  double epsilon_scale_ = 0.02;
   bool epsilon_begun_ = false;
+  int epsilon_steps_ = 0;
   int epsilon_ticks_ = 0;  // since the last beginning
 };
 

@@ -34,7 +34,6 @@ Session::Impl::Impl(SessionConfig c)
       start(MakeStart(config)),
       seed(config.seed),
       parameters(config.parameters),
-      noise(config.noise),
       world(hand, config.model.object, config.world, start.q_open, start.X_WO),
       sensors(hand, dt, seed),
       estimator(hand, dt),
@@ -43,7 +42,7 @@ Session::Impl::Impl(SessionConfig c)
       torque(JointVector::Zero(hand.num_joints())) {
   world.SetStandIn(true);
   ApplyParameters();
-  sensors.SetNoise(noise);
+  sensors.SetNoise(config.noise);
   tasks.resize(hand.fingers.size());
   Context().ToPosture(start.q_open);
   Sense();
@@ -159,7 +158,7 @@ SessionState Session::state() const { return impl_->state; }
 bool Session::job_running() const { return impl_->job_running(); }
 const SessionConfig& Session::config() const { return impl_->config; }
 const Parameters& Session::parameters() const { return impl_->parameters; }
-const NoiseLevels& Session::noise() const { return impl_->noise; }
+const NoiseLevels& Session::noise() const { return impl_->sensors.noise(); }
 std::uint64_t Session::seed() const { return impl_->seed; }
 
 void Session::Snapshot(Frame* frame, bool with_hash) const {
@@ -168,6 +167,13 @@ void Session::Snapshot(Frame* frame, bool with_hash) const {
 }
 
 std::uint64_t Session::StateHash() const { return impl_->Hash(); }
+void Session::Load(std::string_view state) { impl_->Load(state); }
+
+void Session::Save(std::string* state) const {
+  FieldSaver saver(state);
+  impl_->Fields(saver);
+}
+
 std::span<const Event> Session::TakeEvents() { return impl_->log.Take(); }
 
 std::span<const JobRecord> Session::TakeFinishedJobs() {

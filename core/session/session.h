@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/hand/scenario.h"
 #include "core/session/command.h"
@@ -65,6 +66,13 @@ class Session {
   void Snapshot(Frame* frame, bool with_hash) const;
   /// 64-bit hash over world, sensors and controller.
   std::uint64_t StateHash() const;
+  /// Appends every number that decides what comes next, in a form of this build (see
+  /// journal/saved_state.h). Not in state faulted: the world is out of order then.
+  void Save(std::string* state) const;
+  /// Goes on from what Save() wrote, in a session of the same configuration. Throws StateError at
+  /// the first number that cannot be; the session must be thrown away then. Events and ended jobs
+  /// that wait are forgotten.
+  void Load(std::string_view state);
   /// Events since the last call, oldest first; at most 64 are kept per call, older ones are
   /// dropped. The span is valid until the next Tick() or Apply().
   std::span<const Event> TakeEvents();

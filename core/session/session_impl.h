@@ -60,6 +60,34 @@ struct Session::Impl {
   void Snapshot(Frame* frame);
   void RecordFinger(int finger, const KinematicsData& kinematics, FingerFrame* frame) const;
   std::uint64_t Hash() const;
+  void Load(std::string_view bytes);
+  /// What decides the future: the state hash, saved states.
+  template <typename V>
+  void Fields(V& v) {
+    v("tick", tick);
+    v("seed", seed);
+    v("state", state, SessionState::kReleasing);
+    v("parameters", parameters);
+    v("world", world);
+    v("sensors", sensors);
+    v("estimator", estimator);
+    v("felt", felt);
+    v("judge", judge);
+    v("monitor", monitor);
+    v("controller", controller);
+    v("tasks", tasks);
+    v("motion", motion);
+    v("job", job);
+    v("push_until", push_until, kCountOrNone);
+    v("drop_ticks", drop_ticks);
+    v("was_in_contact", was_in_contact);
+    // The other activities begin with their Start.
+    if (state == SessionState::kGrasping) v("grasp", grasp);
+    if (state == SessionState::kReleasing) v("release", release);
+    if (state == SessionState::kExploring) v("explore", explore);
+    if (state == SessionState::kRotating) v("rotate", rotate);
+    if (state == SessionState::kMoving) v("move", move);
+  }
 
   // Fixed for the run.
   const SessionConfig config;
@@ -72,7 +100,6 @@ struct Session::Impl {
   std::int64_t tick = 0;
   SessionState state = SessionState::kIdle;
   Parameters parameters;
-  NoiseLevels noise;
   World world;
   Sensors sensors;
   StateEstimator estimator;  // what the controller believes

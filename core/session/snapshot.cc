@@ -62,7 +62,7 @@ void Session::Impl::Snapshot(Frame* frame) {
   f.state_hash = 0;
   f.state = state;
   f.seed = seed;
-  f.noise = noise;
+  f.noise = sensors.noise();
   f.stand_in = world.stand_in();
   f.num_fingers = hand.num_fingers();
   f.q_sensed = e.q;
@@ -95,27 +95,20 @@ void Session::Impl::Snapshot(Frame* frame) {
 
 std::uint64_t Session::Impl::Hash() const {
   StateHasher hasher;
-  hasher.Add(tick);
-  hasher.Add(seed);
-  hasher.Add(state);
-  world.AddTo(&hasher);
-  sensors.AddTo(&hasher);
-  estimator.AddTo(&hasher);
-  felt.AddTo(&hasher);
-  controller.AddTo(&hasher);
-  grasp.AddTo(&hasher);
-  explore.AddTo(&hasher);
-  rotate.AddTo(&hasher);
-  move.AddTo(&hasher);
-  monitor.AddTo(&hasher);
-  hasher.Add(push_until);
-  hasher.Add(job.start_tick);
-  hasher.Add(drop_ticks);
-  for (const ParameterInfo& info : ParameterTable()) {
-    const Vector3d value = info.get(parameters);
-    for (int k = 0; k < info.size(); ++k) hasher.Add(value[k]);
-  }
+  HashFields(*this, &hasher);
   return hasher.Digest();
+}
+
+void Session::Impl::Load(std::string_view bytes) {
+  FieldLoader loader(bytes, hand.num_fingers());
+  Fields(loader);
+  loader.Finish();
+  if (estimator.estimate().fingers.size() != hand.fingers.size())
+    loader.Refuse("estimator", "has not begun");
+  if (tasks.size() != hand.fingers.size()) loader.Refuse("tasks", "are of another hand");
+  if (Running(state) && !job_running()) loader.Refuse("job", "does not run");
+  log = EventLog();
+  finished.clear();
 }
 
 }  // namespace regrasp

@@ -117,17 +117,4 @@ double FeltSurface::mean_radius() const {
   return num_touched_ == 0 ? kDefaultRadius : std::exp(log_radius_sum_ / num_touched_);
 }
 
-void FeltSurface::AddTo(StateHasher* hasher) const {
-  hasher->Add(num_touched_);
-  hasher->Add(log_radius_sum_);
-  for (int k = 0; k < num_touched_; ++k) {
-    const Cell& cell = cells_[touched_[k]];
-    hasher->Add(touched_[k]);
-    hasher->Add(cell.direction_sum);
-    hasher->Add(cell.normal_sum);
-    hasher->Add(cell.log_radius);
-    hasher->Add(cell.count);
-  }
-}
-
 }  // namespace regrasp

@@ -15,8 +15,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/common/fields.h"
 #include "core/common/frames.h"
-#include "core/common/hash.h"
 
 namespace regrasp {
 
@@ -43,6 +43,13 @@ class FeltSurface {
     int count = 0;  ///< samples, at most kMemory
 
     bool operator==(const Cell&) const = default;
+    template <typename V>
+    void Fields(V& v) {
+      v("direction_sum", direction_sum);
+      v("normal_sum", normal_sum);
+      v("log_radius", log_radius);
+      v("count", count, FieldRange{1, kMemory});
+    }
   };
 
   /// A contact: point [m] and outward unit normal, in O. Left out where the point is nearer than
@@ -60,7 +67,15 @@ class FeltSurface {
   /// The middle of a cell's directions, unit.
   static Vector3d CellDirection(int i);
   static int CellOf(const Vector3d& d_O);
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("num_touched", num_touched_, FieldRange{0, kCells});
+    for (int i = 0; i < num_touched_; ++i) {
+      v("touched", touched_[i], FieldRange{0, kCells - 1});
+      v("cell", cells_[touched_[i]]);
+    }
+    v("log_radius_sum", log_radius_sum_);
+  }
 
  private:
   std::array<Cell, kCells> cells_{};

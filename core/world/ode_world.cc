@@ -29,6 +29,27 @@ void SetMassOf(dBodyID body, double mass, const Matrix3d& I) {
   dBodySetMass(body, &m);
 }
 
+BodyMemory::Body ReadBody(dBodyID body) {
+  const dReal* q = dBodyGetQuaternion(body);
+  return {ToVector(dBodyGetPosition(body)),
+          {q[0], q[1], q[2], q[3]},
+          ToMatrix(dBodyGetRotation(body)),
+          ToVector(dBodyGetLinearVel(body)),
+          ToVector(dBodyGetAngularVel(body))};
+}
+
+/// To the last bit: ODE's own setters normalise what has been normalised before.
+void WriteBody(dBodyID body, const BodyMemory::Body& m) {
+  dBodySetPosition(body, m.p_W.x(), m.p_W.y(), m.p_W.z());  // also tells its shapes
+  dBodySetLinearVel(body, m.v_W.x(), m.v_W.y(), m.v_W.z());
+  dBodySetAngularVel(body, m.w_W.x(), m.w_W.y(), m.w_W.z());
+  auto* q = const_cast<dReal*>(dBodyGetQuaternion(body));
+  for (int k = 0; k < 4; ++k) q[k] = m.wxyz[k];
+  auto* R = const_cast<dReal*>(dBodyGetRotation(body));
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) R[4 * r + c] = m.R_WB(r, c);
+}
+
 }  // namespace
 
 OdeWorld::OdeWorld(const HandModel& hand, const Articulation& articulation,
@@ -139,17 +160,23 @@ Vector3d OdeWorld::LinkAngularVelocity(int link) const {
   return b >= 0 ? ToVector(dBodyGetAngularVel(bodies_[b])) : Vector3d::Zero();
 }
 
+/// The stand-in takes the object where it is, or lets go.
+void OdeWorld::Hold(bool on) {
+  dJointAttach(stand_in_joint_, on ? object_body_ : nullptr, nullptr);
+  if (on) {
+    dJointSetFixed(stand_in_joint_);
+    held_at_ = ReadBody(object_body_);
+  }
+  held_ = on;
+}
+
 void OdeWorld::ApplyLoad(const Load& load) {
   dWorldSetGravity(world_, load.gravity_W.x(), load.gravity_W.y(), load.gravity_W.z());
   if (mass_ != load.mass) {
     mass_ = load.mass;
     SetMassOf(object_body_, mass_, object_.I_OCom * (mass_ / object_.mass));
   }
-  if (load.held != held_) {
-    dJointAttach(stand_in_joint_, load.held ? object_body_ : nullptr, nullptr);
-    if (load.held) dJointSetFixed(stand_in_joint_);
-    held_ = load.held;
-  }
+  if (load.held != held_) Hold(load.held);
   dBodyAddForce(object_body_, load.push_W.x(), load.push_W.y(), load.push_W.z());
   for (const JointPlan& joint : articulation_.joints) {
     const Matrix3d R_WP = LinkRotation(joint.parent_link);
@@ -235,16 +262,24 @@ double OdeWorld::JointDrift() const {
   return largest;
 }
 
-void OdeWorld::AddTo(StateHasher* hasher) const {
-  const auto add_body = [&](dBodyID body) {
-    hasher->Add(ToVector(dBodyGetPosition(body)));
-    const dReal* q = dBodyGetQuaternion(body);
-    for (int k = 0; k < 4; ++k) hasher->Add(q[k]);
-    hasher->Add(ToVector(dBodyGetLinearVel(body)));
-    hasher->Add(ToVector(dBodyGetAngularVel(body)));
-  };
-  for (dBodyID body : bodies_) add_body(body);
-  add_body(object_body_);
+BodyMemory OdeWorld::Memory() const {
+  BodyMemory memory;
+  for (dBodyID body : bodies_) memory.bodies.push_back(ReadBody(body));
+  memory.bodies.push_back(ReadBody(object_body_));
+  memory.held = held_;
+  memory.held_at = held_at_;
+  return memory;
+}
+
+bool OdeWorld::Remember(const BodyMemory& memory) {
+  if (memory.bodies.size() != bodies_.size() + 1) return false;
+  dJointGroupEmpty(contact_group_);
+  WriteBody(object_body_, memory.held_at);
+  Hold(memory.held);
+  held_at_ = memory.held_at;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) WriteBody(bodies_[b], memory.bodies[b]);
+  WriteBody(object_body_, memory.bodies.back());
+  return true;
 }
 
 }  // namespace regrasp

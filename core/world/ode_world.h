@@ -47,13 +47,16 @@ class OdeWorld {
 
   /// Largest distance between the anchors of a joint on its two bodies [m].
   double JointDrift() const;
-  void AddTo(StateHasher* hasher) const;
+  BodyMemory Memory() const;
+  /// Goes on from there; false, and nothing changes, where it is of another hand.
+  bool Remember(const BodyMemory& memory);
 
  private:
   void BuildHand(const JointVector& q0);
   void BuildObject(const Isometry3d& X_WO0);
   Matrix3d LinkRotation(int link) const;
   Vector3d LinkAngularVelocity(int link) const;
+  void Hold(bool on);
   void ApplyLoad(const Load& load);
   void MakeContacts(const FixedVector<ObjectHit, kMaxObjectContacts>& hits,
                     const FixedVector<LinkHit, kMaxLinkHits>& link_hits, double friction);
@@ -70,6 +73,7 @@ class OdeWorld {
   dBodyID object_body_ = nullptr;
   dJointID stand_in_joint_ = nullptr;
   bool held_ = false;
+  BodyMemory::Body held_at_;  // where the stand-in took the object
   double mass_ = 0;
   std::array<dJointFeedback, kMaxObjectContacts> feedback_{};
   std::unique_ptr<Collider> collider_;

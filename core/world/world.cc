@@ -90,7 +90,8 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
   state.qdot = JointVector::Zero(hand.num_joints());
   state.p_WO = X_WO0.translation();
   state.q_WO = Quaterniond(X_WO0.linear()).normalized();
-  fast.SetPosture(q0);
+  const KinematicsData& links = fast.SetPosture(q0);
+  if (config.stepper == Stepper::kFast) ode.SetPoses(links, state);
 }
 
 void World::Impl::CheckInputs() const {
@@ -207,28 +208,31 @@ double World::JointDrift() const { return impl_->faulted ? 0 : impl_->ode.JointD
 void World::MeasureStages(bool on) { impl_->measure = on; }
 World::StageTimes World::stage_times() const { return impl_->times; }
 
-void World::AddTo(StateHasher* hasher) const {
+WorldMemory World::Memory() const {
   const Impl& w = *impl_;
-  hasher->Add(w.faulted);
-  hasher->Add(w.torque);
-  hasher->Add(w.push_W);
-  hasher->Add(w.gravity_W);
-  hasher->Add(w.friction);
-  hasher->Add(w.mass);
-  hasher->Add(w.stand_in);
-  for (const ObjectContact& contact : w.state.contacts) {
-    hasher->Add(contact.link);
-    hasher->Add(contact.p_WC);
-    hasher->Add(contact.normal_W);
-    hasher->Add(contact.force_W);
-  }
-  hasher->Add(w.state.q);
-  hasher->Add(w.state.qdot);
-  hasher->Add(w.state.p_WO);
-  hasher->Add(w.state.q_WO);
-  hasher->Add(w.state.v_WO);
-  hasher->Add(w.state.w_WO);
-  if (w.config.stepper == Stepper::kExact && !w.faulted) w.ode.AddTo(hasher);
+  WorldMemory m{w.faulted,  w.state, w.torque,   w.push_W, w.gravity_W,
+                w.friction, w.mass,  w.stand_in, {}};
+  if (w.config.stepper == Stepper::kExact && !w.faulted) m.bodies = w.ode.Memory();
+  return m;
+}
+
+bool World::Remember(const WorldMemory& m) {
+  Impl& w = *impl_;
+  const auto n = static_cast<Eigen::Index>(w.hand.num_joints());
+  const bool exact = w.config.stepper == Stepper::kExact;
+  if (w.faulted || m.torque.size() != n || m.state.q.size() != n || m.state.qdot.size() != n ||
+      m.state.torque.size() != n)
+    return false;
+  if (exact ? !w.ode.Remember(m.bodies) : !m.bodies.bodies.empty()) return false;
+  w.state = m.state;
+  w.torque = m.torque;
+  w.push_W = m.push_W;
+  w.gravity_W = m.gravity_W;
+  w.friction = m.friction;
+  w.mass = m.mass;
+  w.stand_in = m.stand_in;
+  if (!exact) w.ode.SetPoses(w.fast.SetPosture(w.state.q), w.state);
+  return true;
 }
 
 }  // namespace regrasp

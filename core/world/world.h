@@ -9,9 +9,8 @@
 
 #include <memory>
 
-#include "core/common/fixed_vector.h"
+#include "core/common/fields.h"
 #include "core/common/frames.h"
-#include "core/common/hash.h"
 #include "core/common/limits.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/object_model.h"
@@ -44,6 +43,15 @@ struct ObjectContact {
   Vector3d normal_W = Vector3d::UnitZ();  ///< outward normal of the object
   Vector3d force_W = Vector3d::Zero();    ///< on the object, of the last step [N]
   double depth = 0;                       ///< penetration [m]
+  template <typename V>
+  void Fields(V& v) {
+    v("link", link, FieldRange{0, kMaxLinks - 1});
+    v("finger", finger, v.Finger());
+    v("p_WC", p_WC);
+    v("normal_W", normal_W);
+    v("force_W", force_W);
+    v("depth", depth);
+  }
 };
 
 /// Everything the simulator knows after a step.
@@ -57,6 +65,69 @@ struct WorldState {
   Vector3d w_WO = Vector3d::Zero();  ///< [rad/s]
   FixedVector<ObjectContact, kMaxObjectContacts> contacts;
   int link_link_contacts = 0;  ///< contacts of hand links with each other
+  template <typename V>
+  void Fields(V& v) {
+    v("q", q);
+    v("qdot", qdot);
+    v("torque", torque);
+    v("p_WO", p_WO);
+    v("q_WO", q_WO);
+    v("v_WO", v_WO);
+    v("w_WO", w_WO);
+    v("contacts", contacts);
+    v("link_link_contacts", link_link_contacts);
+  }
+};
+
+/// The bodies of the exact step, as ODE keeps them; nothing with the fast step, which makes them
+/// anew from WorldState.
+struct BodyMemory {
+  struct Body {
+    Vector3d p_W = Vector3d::Zero();  ///< centre of mass [m]
+    Eigen::Vector4d wxyz = Eigen::Vector4d::Unit(0);
+    Matrix3d R_WB = Matrix3d::Identity();
+    Vector3d v_W = Vector3d::Zero(), w_W = Vector3d::Zero();
+    template <typename V>
+    void Fields(V& v) {
+      v("p_W", p_W);
+      v("wxyz", wxyz);
+      v("R_WB", R_WB);
+      v("v_W", v_W);
+      v("w_W", w_W);
+    }
+  };
+  FixedVector<Body, kMaxLinks + 1> bodies;  ///< of the hand, then the object
+  bool held = false;                        ///< the stand-in has the object since a step
+  Body held_at;                             ///< where it took it
+  template <typename V>
+  void Fields(V& v) {
+    v("bodies", bodies);
+    v("held", held);
+    v("held_at", held_at);
+  }
+};
+
+/// All numbers of a world that decide its future.
+struct WorldMemory {
+  bool faulted = false;
+  WorldState state;
+  JointVector torque;  ///< asked for [N m]
+  Vector3d push_W = Vector3d::Zero(), gravity_W = Vector3d::Zero();
+  double friction = 0, mass = 0;
+  bool stand_in = true;
+  BodyMemory bodies;
+  template <typename V>
+  void Fields(V& v) {
+    v("faulted", faulted, FieldRange{0, 0});
+    v("state", state);
+    v("torque", torque);
+    v("push_W", push_W, kUnbounded);
+    v("gravity_W", gravity_W);
+    v("friction", friction);
+    v("mass", mass);
+    v("stand_in", stand_in);
+    v("bodies", bodies);
+  }
 };
 
 enum class StepStatus { kOk, kFault };
@@ -105,8 +176,17 @@ class World {
   void MeasureStages(bool on);
   StageTimes stage_times() const;
 
-  /// Feeds everything that decides the future of this world to the hasher.
-  void AddTo(StateHasher* hasher) const;
+  WorldMemory Memory() const;
+  /// Goes on from there. False, and nothing changes, where it is of another hand or stepper, or this
+  /// world has faulted.
+  bool Remember(const WorldMemory& memory);
+  template <typename V>
+  void Fields(V& v) {
+    WorldMemory memory = Memory();
+    memory.Fields(v);
+    if constexpr (V::kLoads)
+      if (!Remember(memory)) v.Refuse("bodies", "are of another hand or stepper");
+  }
 
  private:
   struct Impl;

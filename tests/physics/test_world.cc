@@ -202,7 +202,7 @@ Vector3d TotalContactForce(const World& world) {
 
 std::uint64_t HashOf(const World& world) {
   StateHasher hasher;
-  world.AddTo(&hasher);
+  HashFields(world, &hasher);
   return hasher.Digest();
 }
 

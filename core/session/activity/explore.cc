@@ -170,14 +170,4 @@ ExplorationFrame FrameOf(const GuidedSlide& slide, double epsilon) {
   return frame;
 }
 
-void ExploreActivity::AddTo(StateHasher* hasher) const {
-  hasher->Add(request_.finger);
-  hasher->Add(request_.criterion);
-  hasher->Add(request_.estimator);
-  hasher->Add(request_.seed);
-  hasher->Add(request_.max_cycles);
-  room_.AddTo(hasher);
-  exploration_.AddTo(hasher);
-}
-
 }  // namespace regrasp

@@ -17,7 +17,14 @@ class ExploreActivity : public Activity {
   ActivityStep Stop(const ActivityContext& context) override;
   void Dropped(const ActivityContext& context) override;
   void Record(const ActivityContext& context, Frame* frame) const override;
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("request", request_);
+    v("room", room_);
+    v("report", report_);
+    v("exploration", exploration_);
+    v("p_path", p_path_);
+  }
 
  private:
   ActivityStep MakeRoom(const ActivityContext& context);

@@ -12,7 +12,10 @@ class GraspActivity : public Activity {
   void Start(const Command& command, const ActivityContext& context) override;
   ActivityStep Update(const ActivityContext& context) override;
   ActivityStep Stop(const ActivityContext& context) override;
-  void AddTo(StateHasher* hasher) const { sequence_.AddTo(hasher); }
+  template <typename V>
+  void Fields(V& v) {
+    v("sequence", sequence_);
+  }
 
  private:
   GraspSequence sequence_;

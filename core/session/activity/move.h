@@ -12,7 +12,12 @@ class MoveActivity : public Activity {
   ActivityStep Update(const ActivityContext& context) override;
   ActivityStep Stop(const ActivityContext& context) override;
   void Dropped(const ActivityContext& context) override;
-  void AddTo(StateHasher* hasher) const { move_.AddTo(hasher); }
+  template <typename V>
+  void Fields(V& v) {
+    v("move", move_);
+    v("p_WO_start", p_WO_start_);
+    v("q_WO_start", q_WO_start_);
+  }
 
  private:
   /// What became of the move so far, by the truth.

@@ -12,6 +12,8 @@ class ReleaseActivity : public Activity {
   ActivityStep Update(const ActivityContext& context) override;
   ActivityStep Stop(const ActivityContext&) override { return {}; }
   void AddTorque(const ActivityContext& context, JointVector* torque) const override;
+  template <typename V>
+  void Fields(V&) {}  // its time is the job's
 };
 
 }  // namespace regrasp

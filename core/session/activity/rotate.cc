@@ -76,11 +76,4 @@ void RotateActivity::Record(const ActivityContext& context, Frame* frame) const 
   frame->exploration = FrameOf(slide, context.parameters.exploration.epsilon);
 }
 
-void RotateActivity::AddTo(StateHasher* hasher) const {
-  gait_.AddTo(hasher);
-  hasher->Add(gait_.request().continuous);
-  hasher->Add(gait_.request().speed_rad_s);
-  hasher->Add(gait_.request().seed);
-}
-
 }  // namespace regrasp

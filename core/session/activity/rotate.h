@@ -14,7 +14,12 @@ class RotateActivity : public Activity {
   void Dropped(const ActivityContext& context) override;
   void Record(const ActivityContext& context, Frame* frame) const override;
   const RegraspRecord& last_regrasp() const { return report_.last(); }
-  void AddTo(StateHasher* hasher) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("gait", gait_);
+    v("report", report_);
+    v("q_WO_start", q_WO_start_);
+  }
 
  private:
   /// The truth about the rotation so far, every tick so that no turn is missed.

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/common/fields.h"
 #include "core/common/random.h"
 
 namespace regrasp {
@@ -335,7 +336,7 @@ TEST(SurfaceExploration, SameSeedSamePathOtherSeedOtherStart) {
 TEST(SurfaceExploration, HashFollowsTheState) {
   const auto Digest = [](const SurfaceExploration& algorithm) {
     StateHasher hasher;
-    algorithm.AddTo(&hasher);
+    HashFields(algorithm, &hasher);
     return hasher.Digest();
   };
   const ExplorationParameters parameters;

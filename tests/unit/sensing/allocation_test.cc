@@ -62,7 +62,7 @@ TEST(SensorsAndKinematics, AllocateNothing) {
         sum += PointJacobian(hand, data, f, FingertipCentre(hand, data, f)).sum();
       sum += GravityTorque(hand, data, Vector3d(0, 0, -9.81)).sum();
       StateHasher hasher;
-      sensors.AddTo(&hasher);
+      HashFields(sensors, &hasher);
       sum += static_cast<double>(hasher.Digest() & 1);
     }
     counting = false;

@@ -183,7 +183,7 @@ TEST_F(SensorsTest, SeedsAndHashesTellRunsApart) {
     sensors.SetNoise(*NoisePreset(preset));
     for (int tick = 0; tick < 5; ++tick) sensors.Read(tick, truth_);
     StateHasher hasher;
-    sensors.AddTo(&hasher);
+    HashFields(sensors, &hasher);
     return hasher.Digest();
   };
   EXPECT_EQ(hash(1, "paper"), hash(1, "paper"));

@@ -124,9 +124,9 @@ TEST(FeltSurface, EveryDirectionHasItsCell) {
 TEST(FeltSurface, HashSeesEverySample) {
   FeltSurface felt = Felt(Box(Vector3d::Constant(0.02)), 3, 2);
   StateHasher before, after;
-  felt.AddTo(&before);
+  HashFields(felt, &before);
   felt.Add({0, 0, 0.0201}, Vector3d::UnitZ());
-  felt.AddTo(&after);
+  HashFields(felt, &after);
   EXPECT_NE(before.Digest(), after.Digest());
 }
 
