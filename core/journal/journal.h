@@ -2,7 +2,7 @@
 
 /// What a run is made of. A session is deterministic: the same build, configuration and list of
 /// (tick, command) give the same bits, so this list is the run. Run files and checkpoints are
-/// journals; nothing else of the state is ever stored.
+/// journals; a state saved beside one is only the quicker way to the same place.
 
 #include <cstdint>
 #include <memory>
@@ -42,6 +42,8 @@ struct Checkpoint {
   std::string state;             ///< of the session, "holding"
   JobRecord job;                 ///< the job that was running; id 0 = none
   Journal journal;
+  /// Of the session: ToBase64(SaveState()), see saved_state.h; empty: there is only the journal.
+  std::string saved_state;
 };
 
 /// Version, commit, compiler and flags of this program: "0.1.0 a1b2c3d gcc-12.2.0 5f0e…". Equal

@@ -92,6 +92,12 @@ void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter
   }
 }
 
+std::uint64_t TextHash(std::string_view text) {
+  StateHasher hasher;
+  for (char c : text) hasher.Add(c);
+  return hasher.Digest();
+}
+
 void CheckFormat(const Json& json, const char* expected) {
   std::string format;
   Load{json}("format", format);
@@ -211,7 +217,11 @@ std::string CheckpointText(const Checkpoint& checkpoint) {
   std::string text = head.json.dump() + "\n" + ConfigText(config, 0) + "\n";
   for (std::size_t i = 0; i < checkpoint.journal.entries.size(); ++i)
     text += EntryText(checkpoint.journal.entries[i], config, 0, i) + "\n";
-  return text;
+  if (checkpoint.saved_state.empty()) return text;
+  Save state;
+  state("belongs_to", HashText(TextHash(text)));
+  state("saved_state", checkpoint.saved_state);
+  return text + state.json.dump() + "\n";
 }
 
 Checkpoint ParseCheckpointHead(std::string_view line) {
@@ -237,6 +247,7 @@ Checkpoint ParseCheckpointHead(std::string_view line) {
 }
 
 Checkpoint ParseCheckpoint(std::string_view text) {
+  const std::string_view whole = text;
   const auto next_line = [&text] {
     const auto end = text.find('\n');
     if (end == std::string_view::npos) throw JournalError("the file ends too early");
@@ -248,6 +259,14 @@ Checkpoint ParseCheckpoint(std::string_view text) {
   checkpoint.journal.config = ParseConfig(next_line()).config;
   for (JournalEntry& entry : checkpoint.journal.entries)
     entry = ParseEntry(next_line(), checkpoint.journal.config).entry;
+  if (text.empty()) return checkpoint;
+  const std::uint64_t before = TextHash(whole.substr(0, whole.size() - text.size()));
+  const Json json = Parse(next_line());
+  std::string belongs_to;
+  Load load{json};
+  load("belongs_to", belongs_to);
+  load("saved_state", checkpoint.saved_state);
+  if (ParseHash(belongs_to) != before) checkpoint.saved_state.clear();
   return checkpoint;
 }
 

@@ -35,9 +35,10 @@ EntryRead ParseEntry(std::string_view text, const SessionConfig& config);
 /// The model of the hand as text: two hands are the same when these are.
 std::string HandText(const HandModel& hand);
 
-/// A checkpoint as JSON lines: what it is, the configuration, the commands.
+/// A checkpoint as JSON lines: what it is, the configuration, the commands, the saved state.
 std::string CheckpointText(const Checkpoint& checkpoint);
-/// Throws JournalError.
+/// Throws JournalError. A saved state that does not belong to the lines before it (the file was
+/// changed) is left out.
 Checkpoint ParseCheckpoint(std::string_view text);
 /// Only what the first line tells: everything but the journal.
 Checkpoint ParseCheckpointHead(std::string_view line);

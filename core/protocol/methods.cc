@@ -32,6 +32,10 @@ constexpr std::array kCheckpointRestore = {
               .min = 0,
               .max = kMaxSafeInteger,
               .default_text = "go on identically"},
+    ParamSpec{.name = "reexecute",
+              .type = kBool,
+              .sentence = "execute the commands again from tick 0, rather than load the state",
+              .default_text = "false"},
 };
 constexpr std::array kDescribe = {
     ParamSpec{.name = "method",
@@ -324,7 +328,9 @@ constexpr std::array kMethods = {
                "same_build}]"},
     MethodSpec{"checkpoint.restore", "checkpoint restore",
                "go on from a checkpoint: identically, or with another seed", kCheckpointRestore,
-               true, "job; continues: the job that goes on after it, or null; tick, state_hash"},
+               true,
+               "job; continues: the job that goes on after it, or null; from: state or commands; "
+               "tick, state_hash"},
     MethodSpec{"checkpoint.save", "checkpoint save", "keep this moment, to go on from it later",
                kCheckpointSave, false, "name, tick, time_s, state, state_hash, commands, path"},
     MethodSpec{

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <exception>
 
+#include "core/journal/saved_state.h"
+
 namespace regrasp {
 namespace {
 
@@ -178,6 +180,7 @@ void ControlLoop::Mark(std::uint64_t request) {
   news.entry.tick = session_->tick();
   news.entry.state_hash = session_->StateHash();
   news.state = session_->state();
+  news.saved = std::make_shared<const std::string>(SaveState(*session_));
   session_->Snapshot(&scratch_.frame, false);
   if (session_->job_running()) news.job = scratch_.frame.job;
   EmitNews(std::move(news));
@@ -268,6 +271,7 @@ void ControlLoop::BeginRestore(ControlRequest request) {
   step_.start_tick = session_->tick();
   publish_due_ = true;
   restoring_ = std::move(request);
+  if (restoring_.session) return Adopt(std::move(restoring_.session));
   try {
     replay_ = std::make_unique<Replay>(
         std::shared_ptr<const Journal>(restoring_.checkpoint, &restoring_.checkpoint->journal));
@@ -308,14 +312,14 @@ void ControlLoop::RestoreSome() {
                                                                   : "another build");
     EndRestore(JobState::kFailed, text);
   } else if (tick == target) {
-    Adopt();
+    Adopt(replay_->TakeSession());
   }
 }
 
 /// The restored session takes the place of the present one.
-void ControlLoop::Adopt() {
+void ControlLoop::Adopt(std::unique_ptr<Session> session) {
   CancelEverything("a checkpoint was restored");
-  session_ = replay_->TakeSession();
+  session_ = std::move(session);
   replay_.reset();
   session_->TakeEvents();  // of the past
   session_->TakeFinishedJobs();

@@ -36,8 +36,10 @@ struct ControlRequest {
   std::int64_t job = 0;    ///< kStep, kCancelStep, kRestore
   std::int64_t ticks = 0;  ///< kStep
   std::shared_ptr<const Checkpoint> checkpoint = {};  ///< kRestore
-  std::uint64_t seed = 0;                             ///< kReset
-  std::shared_ptr<const ObjectModel> object = {};     ///< kReset: the new one, null: the same
+  /// kRestore: already in the checkpoint's state; null: its commands are executed again.
+  std::unique_ptr<Session> session = {};
+  std::uint64_t seed = 0;                          ///< kReset
+  std::shared_ptr<const ObjectModel> object = {};  ///< kReset: the new one, null: the same
 };
 
 /// How a run began: at tick 0, or as the continuation of a checkpoint.
@@ -55,11 +57,12 @@ struct JournalNews {
   enum class Kind : std::uint8_t { kBegin, kCommand, kMark };
   Kind kind = Kind::kCommand;
   std::uint64_t run = 0;
-  JournalEntry entry = {};                     ///< kCommand; kMark: tick and hash
-  std::uint64_t request = 0;                   ///< kMark: number of the request
-  JobRecord job = {};                          ///< kMark: the job that runs; id 0 = none
-  SessionState state = {};                     ///< kMark
-  std::shared_ptr<const RunStart> start = {};  ///< kBegin
+  JournalEntry entry = {};                        ///< kCommand; kMark: tick and hash
+  std::uint64_t request = 0;                      ///< kMark: number of the request
+  JobRecord job = {};                             ///< kMark: the job that runs; id 0 = none
+  SessionState state = {};                        ///< kMark
+  std::shared_ptr<const std::string> saved = {};  ///< kMark: SaveState()
+  std::shared_ptr<const RunStart> start = {};     ///< kBegin
 };
 
 /// One published tick.
@@ -139,7 +142,7 @@ class ControlLoop {
   void CancelEverything(const char* why);
   void BeginRestore(ControlRequest request);
   void RestoreSome();
-  void Adopt();
+  void Adopt(std::unique_ptr<Session> session);
   void EndRestore(JobState state, const char* error);
   void Apply(const Command& command);
   void Mark(std::uint64_t request);

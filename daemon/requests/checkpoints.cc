@@ -1,4 +1,5 @@
-// Checkpoints: a journal in a file. To restore is to re-execute it.
+// Checkpoints: a journal and the state at its end in a file. To restore is to load the state, or to
+// execute the journal again.
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include <fstream>
 
 #include "core/journal/journal_text.h"
+#include "core/journal/saved_state.h"
 #include "daemon/output/files.h"
 #include "daemon/requests/handlers.h"
 
@@ -90,6 +92,17 @@ std::shared_ptr<const Checkpoint> Read(Service& service, const fs::path& path,
   return checkpoint;
 }
 
+/// A session in the checkpoint's state, or null where only executing its commands again leads
+/// there: another build saved it, or the file was changed.
+std::unique_ptr<Session> Load(const Checkpoint& checkpoint) {
+  if (checkpoint.saved_state.empty() || checkpoint.build != BuildIdentity()) return nullptr;
+  auto session = std::make_unique<Session>(checkpoint.journal.config);
+  LoadState(FromBase64(checkpoint.saved_state), session.get());
+  if (session->StateHash() != checkpoint.state_hash || session->tick() != checkpoint.tick)
+    throw StateError("saved state: of another moment");
+  return session;
+}
+
 }  // namespace
 
 Outcome CheckpointSave(Service& service, const Params& params, Client&) {
@@ -109,7 +122,8 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
                           .build = std::string(BuildIdentity()),
                           .state = std::string(Name(mark.state)),
                           .job = mark.job,
-                          .journal = service.journal()};
+                          .journal = service.journal(),
+                          .saved_state = ToBase64(*mark.saved)};
       const auto write = [work, path] {
         try {
           ReplaceFile(path, CheckpointText(work->checkpoint));
@@ -149,6 +163,17 @@ Outcome CheckpointRestore(Service& service, const Params& params, Client&) {
   ControlRequest request;
   request.kind = ControlRequest::Kind::kRestore;
   request.checkpoint = checkpoint;
+  try {
+    if (!params.Bool("reexecute", false)) request.session = Load(*checkpoint);
+  } catch (const std::exception& e) {
+    throw RpcException(
+        RpcError{ErrorCode::kIo,
+                 fmt::format("checkpoint '{}': {}", checkpoint->name, e.what()),
+                 fmt::format("regrasp checkpoint restore {} --reexecute", checkpoint->name),
+                 "name",
+                 {}});
+  }
+  const bool from_state = request.session != nullptr;
   request.command.type = CommandType::kBranch;
   request.command.reseed = params.Has("seed");
   request.command.seed = static_cast<std::uint64_t>(params.Integer("seed", 0));
@@ -162,7 +187,8 @@ Outcome CheckpointRestore(Service& service, const Params& params, Client&) {
     return {.result = {{"job", id},
                        {"continues", continues ? Json(continues) : Json()},
                        {"tick", checkpoint->tick},
-                       {"state_hash", HashText(checkpoint->state_hash)}},
+                       {"state_hash", HashText(checkpoint->state_hash)},
+                       {"from", from_state ? "state" : "commands"}},
             .barrier = barrier};
   } catch (...) {
     service.jobs().Withdraw(id);

@@ -196,11 +196,13 @@ Outcome Reset(Service& service, const Params& params, Client&) {
       throw RpcException(RpcError{ErrorCode::kIo, e.what(), "correct the model", "object", {}});
     }
   }
-  const std::uint64_t barrier = service.Post(request);
+  const std::shared_ptr<const ObjectModel> object = request.object;
+  const std::uint64_t seed = request.seed;
+  const std::uint64_t barrier = service.Post(std::move(request));
   Service::Accepted& accepted = service.accepted;
-  accepted.seed = request.seed;
-  accepted.parameters = ParametersAfterReset(accepted.parameters, request.object.get());
-  if (request.object) accepted.object = request.object;
+  accepted.seed = seed;
+  accepted.parameters = ParametersAfterReset(accepted.parameters, object.get());
+  if (object) accepted.object = object;
   return {.result = {{"seed", accepted.seed}, {"object", accepted.object->name}},
           .barrier = barrier};
 }

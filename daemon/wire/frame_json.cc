@@ -152,6 +152,7 @@ Json TruthJson(const Frame& frame, const HandModel& hand) {
     const FingerFrame& f = frame.fingers[i];
     fingers[hand.fingers[i].name] = {{"in_contact", f.true_contact},
                                      {"manipulability", f.true_manipulability},
+                                     {"p_WC_m", f.true_contact ? Vector(f.true_p_WC) : Json()},
                                      {"p_WF_m", Vector(f.true_tip_W)}};
   }
   return {{"tick", frame.tick},

@@ -88,10 +88,13 @@ class DaemonCase(Case):
 
     def setUp(self):
         super().setUp()
+        self.addCleanup(self.regrasp, "down")
+        self.start_daemon()
+
+    def start_daemon(self):
         up = self.regrasp("--timeout", HANG_S, "up", *self.ARGUMENTS, "--output-dir", self.dir / "out", "--models-dir", SOURCE / "models")
         log = self.socket.with_suffix(".log")
         self.assertEqual(up.returncode, 0, up.stderr + (log.read_text() if log.exists() else ""))
-        self.addCleanup(self.regrasp, "down")
 
 
 class FakeDaemon:

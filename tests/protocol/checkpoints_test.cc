@@ -128,6 +128,54 @@ TEST_F(Checkpoints, ThatWereChangedAreRefusedAtTheTickAndThePresentRunGoesOn) {
   EXPECT_EQ(client->Error("checkpoint.restore", {{"name", "start"}}), -32007);
 }
 
+TEST_F(Checkpoints, LoadTheStateOrExecuteTheCommandsAgainToTheSameBits) {
+  SaveInTheGrasp();
+  Step(100);
+  const std::string later = Hash();
+  for (const bool again : {false, true}) {
+    const Json answer =
+        client->Result("checkpoint.restore", {{"name", "start"}, {"reexecute", again}});
+    EXPECT_EQ(answer["from"], again ? "commands" : "state");
+    EXPECT_EQ(Wait(answer["job"])["state"], "done");
+    EXPECT_EQ(Hash(), saved["state_hash"]);
+    Step(100);
+    EXPECT_EQ(Hash(), later);
+  }
+}
+
+/// Changes `from` to `to` in a file.
+void Replace(const std::string& path, const std::string& from, const std::string& to) {
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  std::string changed = text.str();
+  const auto at = changed.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  changed.replace(at, from.size(), to);
+  std::ofstream(path) << changed;
+}
+
+TEST_F(Checkpoints, OfAnotherBuildAreExecutedAgain) {
+  SaveInTheGrasp();
+  Step(5);
+  Replace(saved["path"], "\"build\":\"", "\"build\":\"x");
+  EXPECT_EQ(client->Result("checkpoint.list")["checkpoints"][0]["same_build"], false);
+  const Json answer = client->Result("checkpoint.restore", {{"name", "start"}});
+  EXPECT_EQ(answer["from"], "commands");
+  EXPECT_EQ(Wait(answer["job"])["state"], "done");
+  EXPECT_EQ(Hash(), saved["state_hash"]);
+}
+
+TEST_F(Checkpoints, WithADamagedStateAreRefusedByNameButTheCommandsStillLeadThere) {
+  SaveInTheGrasp();
+  Step(5);
+  const std::string before = Hash();
+  Replace(saved["path"], "\"saved_state\":\"", "\"saved_state\":\"AAAA");
+  EXPECT_EQ(client->Error("checkpoint.restore", {{"name", "start"}}), -32007);
+  EXPECT_EQ(Hash(), before);
+  EXPECT_EQ(Restore({{"name", "start"}, {"reexecute", true}})["state"], "done");
+  EXPECT_EQ(Hash(), saved["state_hash"]);
+}
+
 TEST_F(Checkpoints, AreRefusedByName) {
   EXPECT_EQ(client->Error("checkpoint.save", {{"name", "../x"}}), -32602);
   EXPECT_EQ(client->Error("checkpoint.save", {{"name", ""}}), -32602);
