@@ -32,21 +32,6 @@ double Distance(const std::array<double, 3>& a, const std::array<double, 3>& b) 
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Mean of the finger's contact points with the object, weighted by force; null without contact.
-Json ContactPoint(const Json& truth, const std::string& finger) {
-  std::array<double, 3> sum = {0, 0, 0};
-  double weight = 0;
-  for (const auto& contact : truth.at("contacts")) {
-    if (At(contact, "finger") != finger) continue;
-    const auto f = Point(contact.at("force_W_n")), p = Point(contact.at("p_WC_m"));
-    const double w = std::hypot(f[0], f[1], f[2]) + 1e-9;
-    for (std::size_t i = 0; i < 3; ++i) sum[i] += w * p[i];
-    weight += w;
-  }
-  if (weight == 0) return nullptr;
-  return {sum[0] / weight, sum[1] / weight, sum[2] / weight};
-}
-
 void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& criterion, int ray,
          std::int64_t direction_seed, int cycles, PhiMap* map) {
   const Json job = daemon->Call("explore", {{"finger", finger},
@@ -66,7 +51,7 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
     if (!sliding) continue;
     if (exploration.at("cycle").get<int>() > cycles) return;
     const Json truth = daemon->Call("truth");
-    const Json point = ContactPoint(truth, finger);
+    const Json& point = truth.at("fingers").at(finger).at("p_WC_m");
     const Json& phi = criterion == "manipulability"
                           ? truth.at("fingers").at(finger).at("manipulability")
                           : exploration.at("phi");

@@ -22,8 +22,8 @@ struct PhiMap {
 /// stop or turn it exactly as they do an exploration. What the rays meet is therefore what an
 /// exploration could reach.
 ///
-/// The daemon is put back to the state before exploring for each ray: a grasp of run `seed` at
-/// noise `noise`. Parameters and noise are as before afterwards, the run is not.
+/// The daemon is put back to the state before exploring for each ray, that of a grasp of run `seed`
+/// at noise `noise`. Parameters and noise are as before afterwards, the run is not.
 /// `exploration.sigma` must be positive.
 PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed,
               const std::string& finger, const std::string& criterion, int rays);

@@ -12,6 +12,7 @@ namespace regrasp::cli {
 namespace {
 
 constexpr double kNoLimit = 0;
+constexpr const char* kStart = "start";                         // the checkpoint of the last grasp
 constexpr std::int64_t kGraspChunk = 100, kGraspLimit = 30000;  // [ticks]
 
 std::vector<std::string> WithSpeed(std::vector<std::string> arguments) {
@@ -57,8 +58,21 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
 }
 
 Json SteppedDaemon::Grasp(std::int64_t seed) {
+  Json start = {{"seed", seed}, {"noise", Call("noise.get")}, {"parameters", Call("param.get")}};
+  if (start_ == start) {
+    const Json restore = Call("checkpoint.restore", {{"name", kStart}});
+    const Json record = Call("job.wait", {{"id", restore.at("job")}});
+    if (!Done(record)) throw CliError(kFailed, Plain(At(record, "error")), "regrasp doctor");
+    return grasp_;
+  }
+  start_ = nullptr;
   Call("reset", {{"seed", seed}});
-  return Run("grasp", Json::object(), kGraspChunk, kGraspLimit);
+  grasp_ = Run("grasp", Json::object(), kGraspChunk, kGraspLimit);
+  if (Done(grasp_)) {
+    Call("checkpoint.save", {{"name", kStart}});
+    start_ = std::move(start);
+  }
+  return grasp_;
 }
 
 bool Done(const Json& record) { return Plain(At(record, "state")) == "done"; }

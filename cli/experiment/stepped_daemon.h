@@ -29,10 +29,14 @@ class SteppedDaemon {
   /// state is "failed" and whose error says why. `look` is called after each chunk.
   Json Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
            std::int64_t max_ticks, const std::function<void()>& look = {});
-  /// A new run in which the object is in the hand. Returns the record of the grasp.
+  /// A run in which the object is in the hand. Returns the record of the grasp. Where seed, noise
+  /// and parameters are those of the last grasp it is not made again: the run goes on from the
+  /// state that it led to, which is the same to the last bit.
   Json Grasp(std::int64_t seed);
 
  private:
+  Json start_;  ///< what the last grasp began from: seed, noise, parameters; null: none is kept
+  Json grasp_;  ///< its record
   PrivateDaemon daemon_;
   Client client_;
 };
