@@ -336,8 +336,10 @@ constexpr std::array kMethods = {
     MethodSpec{
         "contacts", "contacts", "what the controller senses at each fingertip", kNone, false,
         "tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, "
-        "fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
-        "force_command_W_n}}; p_WC_m and normal_W are null without contact"},
+        "normals: outward (out of the object), friction, weight_n, max_force_n (what the "
+        "controller reckons with), fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
+        "force_command_W_n}}; p_WC_m and normal_W are null without contact; evaluate takes this "
+        "answer as it is"},
     MethodSpec{"describe", "call describe",
                "every method with its parameters, types, units and ranges", kDescribe, false,
                "version, protocol, methods, errors"},
@@ -374,9 +376,11 @@ constexpr std::array kMethods = {
                "file (name), path, bytes, tick"},
     MethodSpec{"push", "push", "push the object: a disturbance", kPush, false,
                "force_n, duration_s"},
-    MethodSpec{"quality", "quality", "quality of the grasp", kNone, false,
-               "tick, time_s, criterion, stability, threshold, load_margin_n, measures, fingers: "
-               "{NAME: {manipulability, load_margin_without_n, joint_limit_margin_rad}}"},
+    MethodSpec{
+        "quality", "quality", "quality of the grasp", kNone, false,
+        "tick, time_s, criterion, stability, threshold, load_margin_n, measures, torque_scale_m "
+        "(mean distance of the contacts from the object's centre; torques are divided by "
+        "it), fingers: {NAME: {manipulability, load_margin_without_n, joint_limit_margin_rad}}"},
     MethodSpec{"record.list", "record list", "the run files in the output directory", kNone, false,
                "recordings: [{file, bytes, complete, recording}]"},
     MethodSpec{"record.start", "record start",

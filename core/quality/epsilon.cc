@@ -16,10 +16,12 @@ constexpr std::size_t kTickWrenches = 8 * kMaxFingers;
 constexpr std::size_t kTickFacets = 8192;  // twice the whole hull of 8 contacts with 8 edges
 constexpr std::size_t kMaxFacets = 2'000'000;
 
-/// No 6-dimensional polytope with n vertices has more facets [McMullen 1970], up to kMaxFacets.
+/// Facets before and after an insertion, up to kMaxFacets: no 6-dimensional polytope with n
+/// vertices has more than half of it [McMullen 1970], and the old ones go when the new ones are
+/// there.
 std::size_t FacetRoom(std::size_t n) {
   const double m = static_cast<double>(std::max<std::size_t>(n, 7));
-  const double bound = m * (m - 4) * (m - 5) / 6;
+  const double bound = m * (m - 4) * (m - 5) / 3;
   return static_cast<std::size_t>(std::min<double>(bound, kMaxFacets));
 }
 

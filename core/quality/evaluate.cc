@@ -1,5 +1,6 @@
 #include "core/quality/evaluate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -42,19 +43,26 @@ void Validate(const EvaluateInput& input) {
       throw std::invalid_argument(name + "normal: length " + Number(length) +
                                   "; allowed: a unit vector (within 0.001)");
     RequireRange(name + "mu", contact.mu, 0.0, 10.0);
+    RequireRange(name + "torsional_mu", contact.torsion, 0.0, 10.0);
   }
   RequireRange("torque_scale_m", input.torque_scale, 1e-4, 10.0);
-  RequireRange("cone_edges", input.cone_edges, 3, 64);
+  RequireRange("cone_edges", input.cone_edges, 3, 1024);
   const std::size_t wrenches = input.contacts.size() * static_cast<std::size_t>(input.cone_edges);
-  if (wrenches > kMaxHullWrenches)
+  if (wrenches > kMaxEvaluateWrenches)
     throw std::invalid_argument("contacts * cone_edges: " + std::to_string(wrenches) +
-                                "; allowed: at most " + std::to_string(kMaxHullWrenches));
+                                "; allowed: at most " + std::to_string(kMaxEvaluateWrenches));
   if (input.weight) RequireRange("weight_n", *input.weight, 1e6);
   if (!(input.max_force > 0.0))
     throw std::invalid_argument("max_force_n: " + Number(input.max_force) + "; allowed: above 0");
 }
 
 }  // namespace
+
+bool NormalsPointAway(const EvaluateInput& input) {
+  return !input.contacts.empty() && std::ranges::all_of(input.contacts, [](const auto& contact) {
+    return contact.inward_normal.dot(contact.position) > 0;
+  });
+}
 
 EvaluateOutput Evaluate(const EvaluateInput& input) {
   Validate(input);
@@ -65,7 +73,8 @@ EvaluateOutput Evaluate(const EvaluateInput& input) {
   EpsilonSolver solver;
   out.epsilon = solver.Compute(contacts, input.torque_scale, input.cone_edges);
   out.force_closure = out.epsilon > 0.0;
-  out.volume = WrenchHullVolume(contacts, input.torque_scale, input.cone_edges);
+  if (contacts.size() * static_cast<std::size_t>(input.cone_edges + 2) <= kMaxHullWrenches)
+    out.volume = WrenchHullVolume(contacts, input.torque_scale, input.cone_edges);
   const SingularMeasures singular = ComputeSingularMeasures(contacts, input.torque_scale);
   out.min_singular_value = singular.min_singular_value;
   out.sqrt_det = singular.sqrt_det;

@@ -13,9 +13,9 @@ namespace regrasp {
 /// A grasp to be judged. Names in messages are those of the file format (evaluate_json.h).
 struct EvaluateInput {
   std::vector<GraspContact>
-      contacts;               ///< positions within +-10 m, |normal| = 1 +- 1e-3, mu 0 ... 10
+      contacts;  ///< positions within +-10 m, |normal| = 1 +- 1e-3, mu 0 ... 10, torsion 0 ... 10 m
   double torque_scale = 0.0;  ///< torques are divided by it [m], 1e-4 ... 10
-  int cone_edges = 8;         ///< of the friction pyramid of epsilon and volume, 3 ... 64
+  int cone_edges = 8;         ///< of the friction pyramid of epsilon and volume, 3 ... 1024
   /// Force of gravity on the object [N], within +-1e6; without it there is no load margin.
   std::optional<Vector3d> weight;
   double max_force = std::numeric_limits<double>::infinity();  ///< cap on normal forces [N], > 0
@@ -23,16 +23,23 @@ struct EvaluateInput {
 
 /// What INTERFACE calls the answer of `evaluate`.
 struct EvaluateOutput {
-  double epsilon = 0.0;             ///< Ferrari-Canny, L1; see EpsilonSolver
-  double volume = 0.0;              ///< of the same hull; see WrenchHullVolume()
-  double min_singular_value = 0.0;  ///< see SingularMeasures
+  double epsilon = 0.0;  ///< Ferrari-Canny, L1; see EpsilonSolver
+  /// Of the same hull; see WrenchHullVolume(). None for more than kMaxHullWrenches edges together:
+  /// the facets of a whole six-dimensional hull grow with their cube.
+  std::optional<double> volume;
+  double min_singular_value = 0.0;  ///< see SingularMeasures; of hard fingers, as the next two
   double sqrt_det = 0.0;
   double isotropy = 0.0;
   bool force_closure = false;         ///< epsilon > 0
   std::optional<double> load_margin;  ///< rho [N], present with a weight; see LoadMargin()
 };
 
-/// Computes every measure. At most kMaxHullWrenches contacts * cone_edges. Slow (milliseconds),
+inline constexpr std::size_t kMaxEvaluateWrenches = 8192;  ///< contacts * cone_edges
+
+/// Whether every normal points away from the centre: it was probably given outwards.
+bool NormalsPointAway(const EvaluateInput& input);
+
+/// Computes every measure. Slow (milliseconds),
 /// allocates. Throws std::invalid_argument naming field, value and what is allowed.
 EvaluateOutput Evaluate(const EvaluateInput& input);
 

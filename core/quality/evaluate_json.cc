@@ -98,43 +98,99 @@ Vector3d ToVector(const Json& value, const std::string& path) {
   return v;
 }
 
-EvaluateInput ToInput(const Json& file) {
+int ToEdges(const Json& edges) {
+  const double number = edges.is_number() ? edges.get<double>() : 0.5;
+  if (number != std::floor(number) || std::abs(number) > 1e6)
+    Fail("cone_edges: " + Quoted(edges) + "; allowed: an integer, 3 ... 1024");
+  return static_cast<int>(number);
+}
+
+/// +1 where normals point into the object, -1 where they point out of it.
+double Sense(const Json& file) {
+  const auto normals = file.find("normals");
+  if (normals == file.end() || *normals == "inward") return 1;
+  if (*normals == "outward") return -1;
+  Fail("normals: " + Quoted(*normals) + "; allowed: \"inward\", \"outward\"");
+}
+
+void ReadOptions(const Json& file, EvaluateInput* input) {
+  if (const auto edges = file.find("cone_edges"); edges != file.end())
+    input->cone_edges = ToEdges(*edges);
+  if (const auto weight = file.find("weight_n"); weight != file.end())
+    input->weight = ToVector(*weight, "weight_n");
+  if (const auto force = file.find("max_force_n"); force != file.end())
+    input->max_force = ToNumber(*force, "max_force_n");
+}
+
+double MeanDistance(const std::vector<GraspContact>& contacts) {
+  double sum = 0;
+  for (const GraspContact& contact : contacts) sum += contact.position.norm();
+  return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
+}
+
+/// What `regrasp contacts --json` prints: the fingers that hold, about the sensed centre of the
+/// object. Measures of its own that this format does not know are passed over.
+EvaluateInput FromContacts(const Json& file) {
+  EvaluateInput input;
+  const Json& fingers = Member(file, "", "fingers");
+  const Json& object = Member(file, "", "object");
+  if (!fingers.is_object()) Fail("fingers: " + Quoted(fingers) + "; allowed: an object");
+  if (!object.is_object()) Fail("object: " + Quoted(object) + "; allowed: an object");
+  const Vector3d centre = ToVector(Member(object, "object.", "p_WO_m"), "object.p_WO_m");
+  const double mu = ToNumber(Member(file, "", "friction"), "friction");
+  const double sense = Sense(file);
+  for (const auto& [name, finger] : fingers.items()) {
+    const std::string prefix = "fingers." + name.substr(0, 64) + ".";
+    if (!finger.is_object()) Fail(prefix + ": " + Quoted(finger) + "; allowed: an object");
+    if (Member(finger, prefix, "in_contact") != true) continue;
+    if (Member(finger, prefix, "role") == "free") continue;
+    input.contacts.push_back(
+        {ToVector(Member(finger, prefix, "p_WC_m"), prefix + "p_WC_m") - centre,
+         sense * ToVector(Member(finger, prefix, "normal_W"), prefix + "normal_W"), mu});
+  }
+  input.torque_scale = MeanDistance(input.contacts);
+  if (input.contacts.empty()) Fail("fingers: none holds the object");
+  ReadOptions(file, &input);
+  return input;
+}
+
+EvaluateInput FromGrasp(const Json& file) {
   RequireObject(file, "the file", "",
-                {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n"});
+                {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n", "normals"});
   EvaluateInput input;
   const Json& contacts = Member(file, "", "contacts");
   if (!contacts.is_array())
     Fail("contacts: " + Quoted(contacts) + "; allowed: an array of objects");
+  const double sense = Sense(file);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::string path = "contacts[" + std::to_string(i) + "]";
     const std::string prefix = path + ".";
-    RequireObject(contacts[i], path, prefix, {"position_m", "normal", "mu"});
+    RequireObject(contacts[i], path, prefix, {"position_m", "normal", "mu", "torsional_mu"});
+    const auto torsion = contacts[i].find("torsional_mu");
     input.contacts.push_back(
         {ToVector(Member(contacts[i], prefix, "position_m"), prefix + "position_m"),
-         ToVector(Member(contacts[i], prefix, "normal"), prefix + "normal"),
-         ToNumber(Member(contacts[i], prefix, "mu"), prefix + "mu")});
+         sense * ToVector(Member(contacts[i], prefix, "normal"), prefix + "normal"),
+         ToNumber(Member(contacts[i], prefix, "mu"), prefix + "mu"),
+         torsion == contacts[i].end() ? 0.0 : ToNumber(*torsion, prefix + "torsional_mu")});
   }
   input.torque_scale = ToNumber(Member(file, "", "torque_scale_m"), "torque_scale_m");
-  if (const auto edges = file.find("cone_edges"); edges != file.end()) {
-    const double number = edges->is_number() ? edges->get<double>() : 0.5;
-    if (number != std::floor(number) || std::abs(number) > 1e6)
-      Fail("cone_edges: " + Quoted(*edges) + "; allowed: an integer, 3 ... 64");
-    input.cone_edges = static_cast<int>(number);
-  }
-  if (const auto weight = file.find("weight_n"); weight != file.end())
-    input.weight = ToVector(*weight, "weight_n");
-  if (const auto force = file.find("max_force_n"); force != file.end())
-    input.max_force = ToNumber(*force, "max_force_n");
+  ReadOptions(file, &input);
   return input;
+}
+
+EvaluateInput ToInput(const Json& file) {
+  return file.is_object() && file.contains("fingers") ? FromContacts(file) : FromGrasp(file);
 }
 
 }  // namespace
 
 std::string EvaluateJson(const std::string& text) {
-  const EvaluateOutput measures = Evaluate(ToInput(Parse(text)));
+  const EvaluateInput input = ToInput(Parse(text));
+  const EvaluateOutput measures = Evaluate(input);
   nlohmann::ordered_json out;
   out["epsilon"] = measures.epsilon;
-  out["volume"] = measures.volume;
+  out["volume"] = nullptr;
+  if (measures.volume) out["volume"] = *measures.volume;
   out["min_singular_value"] = measures.min_singular_value;
   out["sqrt_det"] = measures.sqrt_det;
   out["isotropy"] = measures.isotropy;
@@ -145,6 +201,11 @@ std::string EvaluateJson(const std::string& text) {
     if (bounded) out["load_margin_n"] = *measures.load_margin;
     out["load_margin_unbounded"] = !bounded;
   }
+  if (NormalsPointAway(input))
+    out["warnings"] = {
+        "every normal points away from the centre: they must point into the object, or the file "
+        "say "
+        "\"normals\": \"outward\""};
   return out.dump();
 }
 

@@ -8,18 +8,25 @@ namespace regrasp {
 
 /// From the text of a grasp file
 ///
-///   {"contacts": [{"position_m": [x, y, z], "normal": [x, y, z], "mu": m}, ...],
-///    "torque_scale_m": r, "cone_edges": n, "weight_n": [x, y, z], "max_force_n": f}
+///   {"contacts": [{"position_m": [x, y, z], "normal": [x, y, z], "mu": m, "torsional_mu": t},
+///   ...],
+///    "torque_scale_m": r, "cone_edges": n, "weight_n": [x, y, z], "max_force_n": f,
+///    "normals": "inward"}
 ///
-/// to the text (one line) of its measures
+/// or from what `regrasp contacts --json` prints, as it is (normals outward there, as it says;
+/// torque scale the mean distance of the contacts, as in `quality`), to the text (one line) of its
+/// measures
 ///
 ///   {"epsilon": e, "volume": v, "min_singular_value": s, "sqrt_det": d, "isotropy": i,
 ///    "force_closure": b, "load_margin_n": rho, "load_margin_unbounded": u}
 ///
-/// Normals point into the object; one whose length is within 0.001 of 1 is normalised, others are
-/// refused. cone_edges (8 when absent), weight_n and max_force_n (none when absent) are optional;
-/// the two load_margin fields are there only with weight_n. A margin that nothing bounds (force
-/// closure without max_force_n) is null with load_margin_unbounded true: JSON has no infinity.
+/// Normals point into the object unless "normals" is "outward"; with "warnings" where all point
+/// away from the centre. torsional_mu [m] makes a soft finger (grasp.h). volume is null above
+/// kMaxHullWrenches edges together. A normal whose length is within 0.001 of 1 is normalised,
+/// others are refused. cone_edges (8 when absent), weight_n and max_force_n (none when absent) are
+/// optional; the two load_margin fields are there only with weight_n. A margin that nothing bounds
+/// (force closure without max_force_n) is null with load_margin_unbounded true: JSON has no
+/// infinity.
 ///
 /// Throws std::invalid_argument, in one line that names field, value and what is allowed, for
 /// anything that is not such a file: malformed JSON (with line and column), deeper than 32 levels,

@@ -12,11 +12,17 @@ struct GraspContact {
   Vector3d position = Vector3d::Zero();  ///< from the centre about which moments are taken [m]
   Vector3d inward_normal = Vector3d::UnitZ();  ///< unit, into the object
   double mu = 0.8;                             ///< friction coefficient
+  /// Soft finger: largest torsional moment about the normal over the normal force [m]; 0: a hard
+  /// finger. Tangential force and moment share an ellipsoid, (f_t / mu)² + (m / torsion)² <= f_n²
+  /// [Howe, Cutkosky 1996].
+  double torsion = 0;
+
   template <typename V>
   void Fields(V& v) {
     v("position", position);
     v("inward_normal", inward_normal);
     v("mu", mu);
+    v("torsion", torsion);
   }
 };
 

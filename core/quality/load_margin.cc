@@ -18,11 +18,18 @@ constexpr int kMaxPivots = 400;  // per maximisation; typical 5 to 20
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
+/// The share of the friction cone's radius that a price takes out of a column: mu v_t of a hard
+/// finger; of a soft one the ellipsoid's, with the price `spin` of a unit moment about the normal.
+double ConeReach(const GraspContact& contact, double v_t, double spin) {
+  return contact.torsion == 0 ? contact.mu * v_t
+                              : std::hypot(contact.mu * v_t, contact.torsion * spin);
+}
+
 /// Revised simplex over the convex cone of contact wrenches. The columns are all the wrenches
-/// a(u) = G (n + mu u), |u| = 1, of all contacts: infinitely many, but the best one for given
-/// prices y has a closed form, u along the tangential part of y. Every basis is feasible, hence a
-/// lower bound. Rows: 6 of wrench balance, then, with capped normal forces, one per contact. Units:
-/// weight, torque_scale.
+/// a(u) = G (n + mu u), |u| = 1 (with a moment about n for soft fingers), of all contacts:
+/// infinitely many, but the best one for given prices y has a closed form, u along the tangential
+/// part of y. Every basis is feasible, hence a lower bound. Rows: 6 of wrench balance, then, with
+/// capped normal forces, one per contact. Units: weight, torque_scale.
 template <int kMaxRows>
 class ConeSimplex {
  public:
@@ -94,18 +101,21 @@ class ConeSimplex {
     int best_contact = -1;
     bool best_is_slack = false;
     Vector3d best_v = Vector3d::Zero();
+    double best_spin = 0;
     for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
       const GraspContact& contact = contacts_[i];
       const Vector3d v = y_f + y_t.cross(contact.position);
       const double v_n = v.dot(contact.inward_normal);
       const double v_t = std::sqrt(std::max(0.0, v.squaredNorm() - v_n * v_n));
       const double slack = capped_ ? prices_(6 + i) : 0.0;
-      const double value = v_n - contact.mu * v_t + slack;
+      const double spin = y_t.dot(contact.inward_normal);
+      const double value = v_n - ConeReach(contact, v_t, spin) + slack;
       if (value < best) {
         best = value;
         best_contact = i;
         best_is_slack = false;
         best_v = v;
+        best_spin = spin;
       }
       if (capped_ && slack < best) {
         best = slack;
@@ -122,9 +132,15 @@ class ConeSimplex {
     Vector3d u = TangentPart(best_v, contact.inward_normal);
     const double length = u.norm();
     if (length > 0) u /= length;
-    const Vector3d f = contact.inward_normal - contact.mu * u;
+    double slide = contact.mu, moment = 0;
+    if (const double reach = ConeReach(contact, length, best_spin);
+        contact.torsion > 0 && reach > 0) {
+      slide = contact.mu * contact.mu * length / reach;
+      moment = contact.torsion * contact.torsion * best_spin / reach;
+    }
+    const Vector3d f = contact.inward_normal - slide * u;
     Vector6d wrench;
-    wrench << f, contact.position.cross(f) * inverse_scale_;
+    wrench << f, (contact.position.cross(f) - moment * contact.inward_normal) * inverse_scale_;
     column_ = inverse_.template leftCols<6>() * wrench;
     if (capped_) column_ += inverse_.col(6 + best_contact);
     return best;

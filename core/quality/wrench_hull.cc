@@ -26,6 +26,11 @@ void AppendPrimitiveWrenches(std::span<const GraspContact> contacts, double torq
       Wrench& wrench = out.emplace_back();
       wrench << f, contact.position.cross(f) / torque_scale;
     }
+    if (contact.torsion == 0) continue;
+    const Vector3d& n = contact.inward_normal;
+    for (const double sign : {1.0, -1.0})
+      out.emplace_back() << n,
+          (contact.position.cross(n) + sign * contact.torsion * n) / torque_scale;
   }
 }
 

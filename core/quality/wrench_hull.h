@@ -15,8 +15,9 @@ namespace regrasp {
 using Wrench = Eigen::Matrix<double, 6, 1>;  ///< force over torque / torque_scale
 
 /// Appends the primitive wrenches of a grasp to `out`: n + mu (cos a t1 + sin a t2), a = 2 pi j /
-/// edges, over its torque divided by torque_scale; `edges` per contact, in order. Allocates only
-/// when `out` has to grow.
+/// edges, over its torque divided by torque_scale; `edges` per contact, in order; of a soft finger
+/// two more, n with the largest moment about n in either sense. Allocates only when `out` has to
+/// grow.
 void AppendPrimitiveWrenches(std::span<const GraspContact> contacts, double torque_scale, int edges,
                              std::vector<Wrench>& out);
 

@@ -174,7 +174,7 @@ Json Service::JobAnswer(const JobRecord& job) const {
 
 Json Service::Topic(const std::string& topic) {
   const Frame& frame = newest_.frame;
-  if (topic == "contacts") return ContactsJson(frame, hand());
+  if (topic == "contacts") return ContactsJson(frame, hand(), accepted.parameters);
   if (topic == "joints") return JointsJson(frame, hand());
   if (topic == "quality") return QualityJson(frame, hand(), accepted.parameters);
   if (topic == "truth") return TruthJson(frame, hand());

@@ -34,20 +34,27 @@ std::string_view ActiveCriterion(const Frame& frame) {
 
 constexpr int kVolumeEdges = 8;  // of the friction pyramid, as for epsilon
 
-/// Volume of the grasp wrench space of the sensed contacts, torques divided by their mean distance
-/// from the object's centre. Takes about a millisecond: too slow for the simulation, so it is made
-/// here.
-double HullVolume(const Frame& frame, const Parameters& parameters) {
+/// The sensed contacts that hold the object, about its sensed centre.
+std::vector<GraspContact> HoldingContacts(const Frame& frame, const Parameters& parameters) {
   std::vector<GraspContact> contacts;
-  double scale = 0;
-  for (const FingerFrame& f : frame.fingers) {
-    if (f.role == FingerRole::kFree || !f.in_contact) continue;
-    contacts.push_back(
-        {f.p_WC - frame.p_WO_sensed, -f.normal_W, parameters.control.friction_estimate});
-    scale += contacts.back().position.norm();
-  }
-  if (contacts.empty()) return 0;
-  return WrenchHullVolume(contacts, scale / static_cast<double>(contacts.size()), kVolumeEdges);
+  for (const FingerFrame& f : frame.fingers)
+    if (f.role != FingerRole::kFree && f.in_contact)
+      contacts.push_back(
+          {f.p_WC - frame.p_WO_sensed, -f.normal_W, parameters.control.friction_estimate});
+  return contacts;
+}
+
+/// Their mean distance from the centre, by which torques are divided [m]; 0 where there are none.
+double TorqueScale(const std::vector<GraspContact>& contacts) {
+  double sum = 0;
+  for (const GraspContact& contact : contacts) sum += contact.position.norm();
+  return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
+}
+
+/// Volume of the grasp wrench space. Takes about a millisecond: too slow for the simulation, so it
+/// is made here.
+double HullVolume(const std::vector<GraspContact>& contacts) {
+  return contacts.empty() ? 0 : WrenchHullVolume(contacts, TorqueScale(contacts), kVolumeEdges);
 }
 
 std::string_view MeasureName(const Parameters& parameters) {
@@ -66,7 +73,7 @@ std::string_view MeasureName(const Parameters& parameters) {
 
 }  // namespace
 
-Json ContactsJson(const Frame& frame, const HandModel& hand) {
+Json ContactsJson(const Frame& frame, const HandModel& hand, const Parameters& parameters) {
   Json fingers = Json::object();
   for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
     const FingerFrame& f = frame.fingers[i];
@@ -83,6 +90,10 @@ Json ContactsJson(const Frame& frame, const HandModel& hand) {
            {{"p_WO_m", Vector(frame.p_WO_sensed)},
             {"q_WO_wxyz", Wxyz(frame.q_WO_sensed)},
             {"p_WO_reference_m", Vector(frame.p_WO_reference)}}},
+          {"normals", "outward"},
+          {"friction", parameters.control.friction_estimate},
+          {"weight_n", Vector(parameters.control.mass_estimate * parameters.gravity_W)},
+          {"max_force_n", parameters.control.max_normal_force},
           {"fingers", std::move(fingers)}};
 }
 
@@ -105,6 +116,7 @@ Json JointsJson(const Frame& frame, const HandModel& hand) {
 }
 
 Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters) {
+  const std::vector<GraspContact> holding = HoldingContacts(frame, parameters);
   const StabilityFrame& s = frame.stability;
   Json fingers = Json::object();
   for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
@@ -132,7 +144,8 @@ Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& pa
           {"epsilon", s.epsilon},
           {"sqrt_det", s.sqrt_det},
           {"isotropy", s.isotropy},
-          {"volume", HullVolume(frame, parameters)},
+          {"volume", HullVolume(holding)},
+          {"torque_scale_m", holding.empty() ? Json() : Json(TorqueScale(holding))},
           {"exploration", std::move(exploration)},
           {"fingers", std::move(fingers)}};
 }

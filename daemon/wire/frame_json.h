@@ -11,7 +11,7 @@
 namespace regrasp {
 
 /// What the controller senses at each fingertip.
-Json ContactsJson(const Frame& frame, const HandModel& hand);
+Json ContactsJson(const Frame& frame, const HandModel& hand, const Parameters& parameters);
 /// Joints: sensed angles, applied torques, limits.
 Json JointsJson(const Frame& frame, const HandModel& hand);
 /// Quality measures; `parameters` tells which stability measure is selected.

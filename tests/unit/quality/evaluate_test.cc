@@ -117,8 +117,10 @@ TEST(EvaluateJson, NamesFieldAndValueOfBadFiles) {
       {"/torque_scale_m", "0", "torque_scale_m: 0; allowed"},
       {"/torque_scale_m", "-1", "torque_scale_m: -1; allowed"},
       {"/torque_scal_m", "1", "torque_scal_m: unknown name; nearest: torque_scale_m"},
-      {"/cone_edges", "2", "cone_edges: 2; allowed: 3 ... 64"},
-      {"/cone_edges", "65", "cone_edges: 65; allowed"},
+      {"/cone_edges", "2", "cone_edges: 2; allowed: 3 ... 1024"},
+      {"/cone_edges", "1025", "cone_edges: 1025; allowed"},
+      {"/normals", "\"up\"", "normals: \"up\"; allowed: \"inward\", \"outward\""},
+      {"/contacts/1/torsional_mu", "-1", "contacts[1].torsional_mu: -1; allowed: 0 ... 10"},
       {"/cone_edges", "8.5", "cone_edges: 8.5; allowed: an integer"},
       {"/cone_edges", "\"8\"", "cone_edges: \"8\"; allowed: an integer"},
       {"/weight_n", "-0.785", "weight_n: -0.785; allowed: an array of 3 numbers"},
@@ -188,12 +190,79 @@ TEST(Evaluate, RefusesNumbersThatAreNotFinite) {
   }
 }
 
-TEST(Evaluate, RefusesAHullThatWouldNotFit) {
+TEST(Evaluate, LeavesTheVolumeOutWhereTheHullIsTooLarge) {
   EvaluateInput input;
-  input.contacts = Ring(7, 0.025, 0.5);
+  input.contacts = Ring(51, 0.025, 0.5);
   input.torque_scale = 0.025;
-  input.cone_edges = 64;
+  const EvaluateOutput out = Evaluate(input);
+  EXPECT_FALSE(out.volume.has_value());
+  EXPECT_NEAR(out.epsilon, EpsilonSolver().Compute(input.contacts, 0.025, 8), 1e-12);
+  input.contacts = Ring(9, 0.025, 0.5);
+  input.cone_edges = 1024;
   EXPECT_THROW(Evaluate(input), std::invalid_argument);
+}
+
+TEST(EvaluateJson, TakesTheContactsOfTheDaemonAsTheyAre) {
+  const Contacts contacts = Tetrahedron(0.025, 0.5);
+  const Vector3d centre(0.01, -0.06, 0.11);
+  json live = {{"tick", 7},
+               {"object", {{"p_WO_m", {centre.x(), centre.y(), centre.z()}}}},
+               {"normals", "outward"},
+               {"friction", 0.5},
+               {"weight_n", {0, 0, -0.785}},
+               {"max_force_n", 4},
+               {"fingers", json::object()}};
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vector3d p = contacts[i].position + centre, n = -contacts[i].inward_normal;
+    live["fingers"][std::string(1, static_cast<char>('a' + i))] = {
+        {"role", "hold"},
+        {"in_contact", true},
+        {"p_WC_m", {p.x(), p.y(), p.z()}},
+        {"normal_W", {n.x(), n.y(), n.z()}},
+        {"force_n", 1}};
+  }
+  live["fingers"]["free"] = {
+      {"role", "free"}, {"in_contact", true}, {"p_WC_m", {0, 0, 0}}, {"normal_W", {0, 0, 1}}};
+  live["fingers"]["off"] = {{"role", "hold"}, {"in_contact", false}, {"p_WC_m", nullptr}};
+  json file = File(contacts);
+  file["weight_n"] = {0, 0, -0.785};
+  file["max_force_n"] = 4;
+  const json from_live = json::parse(EvaluateJson(live.dump()));
+  const json from_file = json::parse(EvaluateJson(file.dump()));
+  for (const auto& [name, value] : from_file.items())
+    if (value.is_number()) EXPECT_NEAR(from_live[name], value, 1e-9) << name;  // sums round
+  EXPECT_FALSE(from_live.contains("warnings"));
+}
+
+TEST(EvaluateJson, WarnsOfNormalsThatAllPointAway) {
+  json file = File(Tetrahedron(0.025, 0.5));
+  for (auto& contact : file["contacts"])
+    for (auto& x : contact["normal"]) x = -x.get<double>();
+  EXPECT_EQ(json::parse(EvaluateJson(file.dump()))["warnings"].size(), 1u);
+  file["normals"] = "outward";
+  const json turned = json::parse(EvaluateJson(file.dump()));
+  EXPECT_FALSE(turned.contains("warnings"));
+  EXPECT_EQ(turned["epsilon"],
+            json::parse(EvaluateJson(File(Tetrahedron(0.025, 0.5)).dump()))["epsilon"]);
+}
+
+TEST(Evaluate, SoftFingersHoldWithTwoContacts) {
+  EvaluateInput input;
+  for (const double side : {1.0, -1.0})
+    input.contacts.push_back({Vector3d(side * 0.025, 0, 0), Vector3d(-side, 0, 0), 0.5});
+  input.torque_scale = 0.025;
+  input.weight = Vector3d(0, 0, -0.785);
+  input.max_force = 4;
+  const EvaluateOutput hard = Evaluate(input);
+  EXPECT_EQ(hard.epsilon, 0);  // nothing resists a turn about the line of the two
+  EXPECT_EQ(*hard.load_margin, 0);
+  for (GraspContact& contact : input.contacts) contact.torsion = 0.005;
+  const EvaluateOutput soft = Evaluate(input);
+  EXPECT_GT(soft.epsilon, 0);
+  // About x: both contacts at 4 N with 5 mm give 0.04 N m, over 0.025 m 1.6 N, less what the
+  // ellipsoid gives to the weight: 4 N sqrt(1 - (0.3925 / 2)²) each.
+  EXPECT_LT(*soft.load_margin, 1.6);
+  EXPECT_GT(*soft.load_margin, 0.5);
 }
 
 }  // namespace
