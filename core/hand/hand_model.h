@@ -33,7 +33,8 @@ struct Link {
 };
 
 /// A revolute joint. The child link's frame has its origin at the joint: X_PL(q) = X_PJ *
-/// Rot(axis_J, q).
+/// Rot(axis_J, q). A coupled joint (driver >= 0) has no drive of its own: an elastic transmission
+/// holds it at q = ratio q(driver) + offset, and passes `ratio` times its torque to the driver.
 struct Joint {
   std::string name;
   int parent_link = -1;
@@ -43,13 +44,15 @@ struct Joint {
   double lower = 0, upper = 0;               ///< limits [rad], lower < upper
   double effort = 0;                         ///< largest torque of the drive [N m]
   double damping = 0;                        ///< viscous damping of joint and gear [N m s/rad]
-  double armature = 0;  ///< inertia of the rotor reflected to the joint [kg m²]
+  double armature = 0;           ///< inertia of the rotor reflected to the joint [kg m²]
+  int driver = -1;               ///< coupled: the driven joint it follows
+  double ratio = 1, offset = 0;  ///< coupled: of the angle, [] and [rad]
 };
 
 /// One finger: a chain from the palm to a tip.
 struct Finger {
   std::string name;         ///< as users type it, e.g. "ring"
-  std::vector<int> joints;  ///< joint indices, root to tip
+  std::vector<int> joints;  ///< driven joints that move the tip, root to tip
   int tip_link = -1;        ///< the link that carries the fingertip
   Vector3d p_LF =
       Vector3d::Zero();   ///< centre of the tip's rounding sphere in the tip link's frame [m]
@@ -58,11 +61,15 @@ struct Finger {
 
 struct HandModel {
   std::string name;
-  std::vector<Link> links;    ///< links[0] is the palm, fixed to the world; parents before children
-  std::vector<Joint> joints;  ///< parents before children
+  std::vector<Link> links;  ///< links[0] is the palm, fixed to the world; parents before children
+  /// Driven joints (parents before children), then `num_coupled` coupled ones. A JointVector has
+  /// one value for each driven joint.
+  std::vector<Joint> joints;
+  int num_coupled = 0;
   std::vector<Finger> fingers;
 
-  int num_joints() const { return static_cast<int>(joints.size()); }
+  /// Driven joints.
+  int num_joints() const { return static_cast<int>(joints.size()) - num_coupled; }
   int num_fingers() const { return static_cast<int>(fingers.size()); }
   /// Index of the finger with this name, or -1.
   int FindFinger(const std::string& finger_name) const {

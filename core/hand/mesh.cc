@@ -1,33 +1,113 @@
 #include "core/hand/mesh.h"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <assimp/Importer.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <map>
-#include <system_error>
+#include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace regrasp {
 namespace {
 
-constexpr std::size_t kMaxVertices = 200000;
+constexpr std::size_t kMaxVertices = 200000;  // of a welded mesh
+
+/// Corners by cell of a grid; a corner is looked for in its own cell and the 26 around it.
+class Welder {
+ public:
+  Welder(const Vector3d& corner, double distance) : corner_(corner), distance_(distance) {}
+
+  int Add(const Vector3d& p, std::vector<Vector3d>* vertices) {
+    const Cell cell = CellOf(p);
+    for (std::int64_t dx = -1; dx <= 1; ++dx)
+      for (std::int64_t dy = -1; dy <= 1; ++dy)
+        for (std::int64_t dz = -1; dz <= 1; ++dz) {
+          const auto found = first_.find(Key({cell[0] + dx, cell[1] + dy, cell[2] + dz}));
+          if (found == first_.end()) continue;
+          for (int i = found->second; i >= 0; i = next_[static_cast<std::size_t>(i)])
+            if (((*vertices)[static_cast<std::size_t>(i)] - p).norm() < distance_) return i;
+        }
+    const int index = static_cast<int>(vertices->size());
+    vertices->push_back(p);
+    const auto [it, is_new] = first_.try_emplace(Key(cell), -1);
+    next_.push_back(it->second);
+    it->second = index;
+    return index;
+  }
+
+ private:
+  using Cell = std::array<std::int64_t, 3>;
+  Cell CellOf(const Vector3d& p) const {
+    Cell cell;
+    for (int k = 0; k < 3; ++k)
+      cell[static_cast<std::size_t>(k)] =
+          static_cast<std::int64_t>(std::floor((p[k] - corner_[k]) / distance_));
+    return cell;
+  }
+  // Cells that share a key share a list: slower, never wrong.
+  static std::uint64_t Key(const Cell& c) {
+    return static_cast<std::uint64_t>(c[0]) * 0x9E3779B97F4A7C15ULL ^
+           static_cast<std::uint64_t>(c[1]) * 0xC2B2AE3D27D4EB4FULL ^
+           static_cast<std::uint64_t>(c[2]) * 0x165667B19E3779F9ULL;
+  }
+
+  Vector3d corner_;  // of the bounding box, so that cells have small numbers
+  double distance_;
+  std::unordered_map<std::uint64_t, int> first_;
+  std::vector<int> next_;
+};
+
+/// No area: the height over the longest side is less than the welding distance.
+bool IsFlat(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
+  const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return (b - a).cross(c - a).norm() < 1e-3 * kWeld * longest;
+}
+
+/// An edge that is not run through as often in one sense as in the other, if there is one.
+const std::pair<int, int>* OpenEdge(const TriangleMesh& mesh, bool with_flat,
+                                    std::map<std::pair<int, int>, int>* balance) {
+  balance->clear();
+  for (const auto& t : mesh.triangles) {
+    if (!with_flat && IsFlat(mesh, t)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      (*balance)[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  }
+  for (const auto& [edge, count] : *balance)
+    if (count != 0) return &edge;
+  return nullptr;
+}
 
 void CheckClosed(const std::filesystem::path& file, const TriangleMesh& mesh) {
-  std::map<std::pair<int, int>, int> uses;
-  for (const auto& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) ++uses[{t[k], t[(k + 1) % 3]}];
-  for (const auto& [edge, count] : uses) {
-    const auto opposite = uses.find({edge.second, edge.first});
-    if (count == 1 && opposite != uses.end() && opposite->second == 1) continue;
-    const Vector3d p = 0.5 * (mesh.vertices[edge.first] + mesh.vertices[edge.second]);
-    throw ModelError(
-        fmt::format("{}: mesh is not closed: the edge at ({:.4g}, {:.4g}, {:.4g}) must belong to "
-                    "exactly two triangles "
-                    "that face the same side",
-                    file.string(), p.x(), p.y(), p.z()));
-  }
+  std::map<std::pair<int, int>, int> balance;
+  if (OpenEdge(mesh, false, &balance) == nullptr) return;
+  const std::pair<int, int>* open = OpenEdge(mesh, true, &balance);
+  if (open == nullptr) return;
+  const Vector3d p = 0.5 * (mesh.vertices[open->first] + mesh.vertices[open->second]);
+  throw ModelError(fmt::format(
+      "{}: mesh is not closed: the edge at ({:.4g}, {:.4g}, {:.4g}) must belong to two triangles "
+      "that face the same side",
+      file.string(), p.x(), p.y(), p.z()));
+}
+
+void DropUnused(TriangleMesh* mesh) {
+  std::vector<int> place(mesh->vertices.size(), -1);
+  std::vector<Vector3d> used;
+  for (auto& t : mesh->triangles)
+    for (int& corner : t) {
+      int& at = place[static_cast<std::size_t>(corner)];
+      if (at < 0) {
+        at = static_cast<int>(used.size());
+        used.push_back(mesh->vertices[static_cast<std::size_t>(corner)]);
+      }
+      corner = at;
+    }
+  mesh->vertices = std::move(used);
 }
 
 }  // namespace
@@ -39,52 +119,60 @@ double Volume(const TriangleMesh& mesh) {
   return six_volumes / 6;
 }
 
-TriangleMesh LoadClosedMesh(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw ModelError(fmt::format("{}: mesh file not found", file.string()));
-  Assimp::Importer importer;
-  const aiScene* scene =
-      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices |
-                                           aiProcess_DropNormals);
-  if (scene == nullptr)
-    throw ModelError(
-        fmt::format("{}: cannot read the mesh: {}", file.string(), importer.GetErrorString()));
-
+TriangleMesh WeldMesh(const RawMesh& raw, const Vector3d& scale) {
   TriangleMesh mesh;
-  struct Less {
-    bool operator()(const Vector3d& a, const Vector3d& b) const {
-      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-    }
-  };
-  std::map<Vector3d, int, Less> index;
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& part = *scene->mMeshes[m];
-    std::vector<int> of_part(part.mNumVertices);
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      const Vector3d p(part.mVertices[i].x, part.mVertices[i].y, part.mVertices[i].z);
-      if (!p.allFinite())
-        throw ModelError(fmt::format("{}: vertex {} is not finite", file.string(), i));
-      const auto [it, is_new] = index.try_emplace(p, static_cast<int>(mesh.vertices.size()));
-      if (is_new) mesh.vertices.push_back(p);
-      of_part[i] = it->second;
-    }
-    for (unsigned i = 0; i < part.mNumFaces; ++i) {
-      const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // stray points and lines enclose nothing
-      mesh.triangles.emplace_back(of_part[face.mIndices[0]], of_part[face.mIndices[1]],
-                                  of_part[face.mIndices[2]]);
-    }
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& v : raw.vertices)
+    box.extend(Vector3d(v.cast<double>().cwiseProduct(scale)));
+  const double size = box.isEmpty() ? 0 : box.sizes().norm();
+  Welder welder(box.isEmpty() ? Vector3d::Zero() : Vector3d(box.min()),
+                std::max(kWeld, 1e-6 * size));
+  std::vector<int> of_raw;
+  for (const Eigen::Vector3f& v : raw.vertices)
+    of_raw.push_back(welder.Add(v.cast<double>().cwiseProduct(scale), &mesh.vertices));
+  const bool mirrored = scale.prod() < 0;
+  std::set<std::array<int, 3>> seen;
+  for (const Eigen::Vector3i& t : raw.triangles) {
+    Eigen::Vector3i w(of_raw[t[0]], of_raw[t[1]], of_raw[t[2]]);
+    if (mirrored) std::swap(w[1], w[2]);
+    if (w[0] == w[1] || w[1] == w[2] || w[2] == w[0]) continue;
+    std::array<int, 3> key = {w[0], w[1], w[2]};
+    std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    if (seen.insert(key).second) mesh.triangles.push_back(w);
   }
-  if (mesh.triangles.size() < 4 || mesh.vertices.size() > kMaxVertices)
+  DropUnused(&mesh);
+  return mesh;
+}
+
+TriangleMesh LoadMesh(const std::filesystem::path& file, const Vector3d& scale) {
+  TriangleMesh mesh = WeldMesh(ReadMeshFile(file), scale);
+  if (mesh.triangles.empty())
+    throw ModelError(fmt::format("{}: the mesh has no triangle", file.string()));
+  return mesh;
+}
+
+void CloseMesh(const std::filesystem::path& file, bool mirrored, TriangleMesh* mesh) {
+  if (mesh->triangles.size() < 4 || mesh->vertices.size() > kMaxVertices)
     throw ModelError(
         fmt::format("{}: {} triangles on {} vertices; allowed are at least 4 on at most {}",
-                    file.string(), mesh.triangles.size(), mesh.vertices.size(), kMaxVertices));
-  CheckClosed(file, mesh);
-  if (!(Volume(mesh) > 0))
+                    file.string(), mesh->triangles.size(), mesh->vertices.size(), kMaxVertices));
+  CheckClosed(file, *mesh);
+  std::erase_if(mesh->triangles, [&](const auto& t) { return IsFlat(*mesh, t); });
+  DropUnused(mesh);
+  double volume = Volume(*mesh);
+  if (mirrored && volume < 0) {
+    for (auto& t : mesh->triangles) std::swap(t[1], t[2]);
+    volume = -volume;
+  }
+  if (!(volume > 0) || mesh->triangles.size() < 4)
     throw ModelError(fmt::format(
         "{}: the mesh's volume is {:.4g}; triangles must be counter-clockwise seen from outside",
-        file.string(), Volume(mesh)));
+        file.string(), volume));
+}
+
+TriangleMesh LoadClosedMesh(const std::filesystem::path& file, const Vector3d& scale) {
+  TriangleMesh mesh = WeldMesh(ReadMeshFile(file), scale);
+  CloseMesh(file, scale.prod() < 0, &mesh);
   return mesh;
 }
 

@@ -4,19 +4,35 @@
 #include <vector>
 
 #include "core/common/frames.h"
+#include "core/hand/mesh_file.h"
 #include "core/hand/model_error.h"
 
 namespace regrasp {
 
 struct TriangleMesh {
-  std::vector<Vector3d> vertices;          ///< [m when the file is in metres]
+  std::vector<Vector3d> vertices;          ///< [m]
   std::vector<Eigen::Vector3i> triangles;  ///< counter-clockwise seen from outside
 };
 
-/// Reads any format assimp knows, welding equal vertices, and checks that the surface is closed
-/// (every edge belongs to two triangles that run through it in opposite senses) and faces outwards
-/// (its volume is positive). Throws ModelError.
-TriangleMesh LoadClosedMesh(const std::filesystem::path& file);
+/// Corners nearer than this are one [m]; or nearer than 1e-6 of the mesh's size, if that is more.
+inline constexpr double kWeld = 1e-6;
+
+/// Scales a mesh, welds its corners and drops triangles with two equal corners, repeated triangles
+/// and corners that no triangle uses. A mirroring scale turns the triangles, so that they face the
+/// side they faced. `scale`: per axis, not 0.
+TriangleMesh WeldMesh(const RawMesh& raw, const Vector3d& scale);
+
+/// WeldMesh of a file, for shapes that are fitted: need not be closed. Throws ModelError.
+TriangleMesh LoadMesh(const std::filesystem::path& file, const Vector3d& scale);
+
+/// The same for a body: its surface must be closed (every edge is run through as often in one sense
+/// as in the other, so that several closed pieces may touch) and face outwards (its volume is
+/// positive; a mirrored mesh is turned). Triangles without area are dropped. Throws ModelError.
+TriangleMesh LoadClosedMesh(const std::filesystem::path& file,
+                            const Vector3d& scale = Vector3d::Ones());
+
+/// The checks of LoadClosedMesh on a welded mesh. `mirrored`: the scale was.
+void CloseMesh(const std::filesystem::path& file, bool mirrored, TriangleMesh* mesh);
 
 /// Volume enclosed by a closed mesh: sum over triangles of det(a, b, c) / 6.
 double Volume(const TriangleMesh& mesh);

@@ -11,6 +11,8 @@
 #include "core/common/limits.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/model_error.h"
+#include "core/hand/model_path.h"
+#include "core/hand/model_report.h"
 #include "core/hand/object_model.h"
 
 namespace regrasp {
@@ -29,22 +31,21 @@ struct LoadedScenario {
   Scenario scenario;
   HandModel hand;
   ObjectModel object;
+  ModelReport report;  ///< what loading did beyond reading; not part of a run
 };
-
-/// Directories that are searched for models, in order: `models_dir` if given, $REGRASP_MODELS_DIR,
-/// the source tree this was built from, the installed share/regrasp/models.
-std::vector<std::filesystem::path> ModelSearchPath(const std::string& models_dir = "");
 
 /// Loads the scenario that belongs to a hand (`hand`: a name in the search path, or a .urdf file
 /// with a .toml of the same name beside it) with an object (a name, a .urdf file, or empty for the
 /// scenario's own). Throws ModelError; a name that is not found is answered with the names that
 /// are.
 LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
-                            const std::vector<std::filesystem::path>& search_path);
+                            const std::vector<std::filesystem::path>& search_path,
+                            const LoadOptions& options = {});
 
 /// Loads one object by name or .urdf file. Throws ModelError.
 ObjectModel LoadObject(const std::string& object,
-                       const std::vector<std::filesystem::path>& search_path);
+                       const std::vector<std::filesystem::path>& search_path,
+                       const LoadOptions& options = {}, ModelReport* report = nullptr);
 
 /// Names of the objects in the search path, sorted.
 std::vector<std::string> ListObjects(const std::vector<std::filesystem::path>& search_path);

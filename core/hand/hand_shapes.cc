@@ -1,0 +1,164 @@
+#include "core/hand/hand_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <system_error>
+
+#include "core/hand/shape_fit.h"
+#include "core/hand/urdf_values.h"
+
+namespace regrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kGoodFit = 1e-3;   // [m]; a fingertip beyond it is said
+constexpr double kLargestLink = 1;  // [m]; a larger mesh has another unit
+
+void Pose(const Isometry3d& X, Shape* shape) {
+  shape->a_L = X * shape->a_L;
+  shape->b_L = X * shape->b_L;
+  shape->X_LB = X * shape->X_LB;
+}
+
+bool IsFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+}  // namespace
+
+void HandShapes::Warn(int line, const UrdfLink& in, std::string text) {
+  if (report_)
+    report_->warnings.push_back({problems_->file(), line, LinkElement(in.name), std::move(text)});
+}
+
+std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip) {
+  std::vector<Shape> shapes;
+  for (const UrdfCollision& collision : in.collisions) {
+    const Isometry3d X = X_LG * collision.X_LG;
+    const UrdfGeometry& geometry = collision.geometry;
+    Shape shape;
+    switch (geometry.kind) {
+      case UrdfGeometry::Kind::kSphere:
+        shape.radius = geometry.radius;
+        shape.a_L = shape.b_L = X.translation();
+        break;
+      case UrdfGeometry::Kind::kCylinder:
+        shape.radius = geometry.radius;
+        shape.a_L = X * Vector3d(0, 0, -geometry.length / 2);
+        shape.b_L = X * Vector3d(0, 0, geometry.length / 2);
+        break;
+      case UrdfGeometry::Kind::kBox:
+        shape.kind = Shape::Kind::kBox;
+        shape.X_LB = X;
+        shape.half_extents = geometry.size / 2;
+        break;
+      case UrdfGeometry::Kind::kMesh:
+        shape = OfMesh(in, geometry, X, fingertip);
+        break;
+    }
+    shapes.push_back(shape);
+  }
+  return shapes;
+}
+
+fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
+  if (IsFile(geometry.mesh)) return geometry.mesh;
+  fs::path beside;
+  std::error_code ignored;
+  std::set<fs::path> directories;
+  for (const auto& entry :
+       fs::directory_iterator(geometry.mesh.parent_path().parent_path(), ignored))
+    directories.insert(entry.path());
+  for (const fs::path& directory : directories)
+    if (beside.empty() && IsFile(directory / geometry.mesh.filename()))
+      beside = directory / geometry.mesh.filename();
+  if (!options_.fill_missing_meshes) {
+    problems_->Add(
+        geometry.line, "{}: <mesh> filename = {}: file not found{}; --fill-missing-meshes takes {}",
+        LinkElement(in.name), Shown(geometry.mesh_name),
+        beside.empty() ? "" : ", but " + beside.lexically_normal().string() + " is there",
+        beside.empty() ? "a capsule along the link" : "that");
+    return {};
+  }
+  if (!beside.empty())
+    Warn(geometry.line, in,
+         fmt::format("<mesh> filename = {}: not found; {} in its place", Shown(geometry.mesh_name),
+                     beside.lexically_normal().string()));
+  return beside;
+}
+
+Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
+  Vector3d end = Vector3d::Zero();
+  for (const int j : in.child_joints) {
+    const Vector3d p = file_.joints[static_cast<std::size_t>(j)].X_PJ.translation();
+    if (p.norm() > end.norm()) end = p;
+  }
+  // Links of hands are some 3.5 times as long as they are thick.
+  constexpr double kSlender = 0.28, kLeast = 4e-3, kMost = 12e-3;
+  Shape shape;
+  shape.radius = std::clamp(kSlender * end.norm(), kLeast, kMost);
+  if (end.norm() > shape.radius) shape.b_L = end * (1 - shape.radius / end.norm());
+  Warn(geometry.line, in,
+       fmt::format("<mesh> filename = {}: not found; a capsule of {:.3g} mm radius and {:.3g} mm "
+                   "segment in its place",
+                   Shown(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
+  return shape;
+}
+
+const TriangleMesh* HandShapes::Mesh(const fs::path& file, const Vector3d& scale) {
+  const std::string key =
+      fmt::format("{} {} {} {}", file.string(), scale.x(), scale.y(), scale.z());
+  const auto known = meshes_.find(key);
+  if (known != meshes_.end()) return &known->second;
+  return &meshes_.emplace(key, LoadMesh(file, scale)).first->second;
+}
+
+Shape HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
+                         bool fingertip) {
+  const fs::path file = Find(in, geometry);
+  Shape shape;
+  shape.radius = 1e-3;
+  if (file.empty()) {
+    if (!options_.fill_missing_meshes) return shape;
+    shape = Filled(in, geometry);
+    // Along the link's own frame, not where the mesh would have been.
+    Pose(X * in.collisions.front().X_LG.inverse(), &shape);
+    return shape;
+  }
+  FittedShape fit;
+  try {
+    TriangleMesh posed = *Mesh(file, geometry.scale);
+    Eigen::AlignedBox3d box;
+    for (Vector3d& v : posed.vertices) {
+      v = X * v;
+      box.extend(v);
+    }
+    if (const double size = box.sizes().maxCoeff(); size > kLargestLink)
+      throw ModelError(
+          fmt::format("{}: the mesh is {:.4g} m long; allowed are at most {:g} m{}", file.string(),
+                      size, kLargestLink,
+                      size < 1000 * kLargestLink
+                          ? "; if the file is in millimetres: scale=\"0.001 0.001 0.001\""
+                          : ""));
+    const Vector3d middle = box.center();
+    const Vector3d toward =
+        middle.norm() > 1e-3 ? Vector3d(middle.normalized()) : Vector3d::UnitZ();
+    fit = fingertip ? FitFingertip(posed, toward) : FitShape(posed);
+  } catch (const ModelError& error) {
+    problems_->Add(geometry.line, "{}: {}", LinkElement(in.name), error.what());
+    return shape;
+  }
+  if (report_)
+    report_->fits.push_back({in.name, file.string(), fit.kind, fit.error_m, fit.rms_m, fingertip});
+  if (fingertip && fit.error_m > kGoodFit)
+    Warn(geometry.line, in,
+         fmt::format("the fingertip's {} differs from its mesh by up to {:.2g} mm (rms {:.2g} mm); "
+                     "within 1 mm contacts would be those of the mesh",
+                     fit.kind, 1e3 * fit.error_m, 1e3 * fit.rms_m));
+  return fit.shape;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,47 @@
+#pragma once
+
+/// The collision shapes of one hand link from the <collision> elements of a URDF link. Used only by
+/// the hand's loader.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/hand/hand_model.h"
+#include "core/hand/mesh.h"
+#include "core/hand/model_report.h"
+#include "core/hand/problems.h"
+#include "core/hand/urdf_file.h"
+
+namespace regrasp {
+
+class HandShapes {
+ public:
+  HandShapes(const UrdfFile& file, const LoadOptions& options, Problems* problems,
+             ModelReport* report)
+      : file_(file), options_(options), problems_(problems), report_(report) {}
+
+  /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh is
+  /// fitted by the capsule or sphere that its far end needs, else by what comes nearest to all of
+  /// it.
+  std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip);
+
+ private:
+  Shape OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
+               bool fingertip);
+  /// The file named, or with fill_missing_meshes one of its name in a directory beside it; empty
+  /// where there is none.
+  std::filesystem::path Find(const UrdfLink& in, const UrdfGeometry& geometry);
+  /// A capsule from the link's frame to the farthest frame of its children.
+  Shape Filled(const UrdfLink& in, const UrdfGeometry& geometry);
+  const TriangleMesh* Mesh(const std::filesystem::path& file, const Vector3d& scale);
+  void Warn(int line, const UrdfLink& in, std::string text);
+
+  const UrdfFile& file_;
+  const LoadOptions& options_;
+  Problems* problems_;
+  ModelReport* report_;
+  std::map<std::string, TriangleMesh> meshes_;  // by file and scale: hands repeat them
+};
+
+}  // namespace regrasp

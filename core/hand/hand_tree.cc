@@ -1,0 +1,139 @@
+#include "core/hand/hand_tree.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/hand/urdf_values.h"
+
+namespace regrasp {
+namespace {
+
+using Type = UrdfJoint::Type;
+
+void CheckLimits(const UrdfJoint& joint, const std::string& element, Problems* problems) {
+  if (joint.limit_line == 0) {
+    problems->Add(joint.line, "{}: <limit> is missing; its effort is needed", element);
+    return;
+  }
+  if (joint.type == Type::kRevolute) {
+    for (const auto& [name, value] :
+         {std::pair{"lower", joint.lower}, std::pair{"upper", joint.upper}})
+      if (!(std::abs(value) <= M_PI))
+        problems->Add(joint.limit_line, "{}: <limit> {} [rad] = {:.6g}; allowed {:.6g} .. {:.6g}",
+                      element, name, value, -M_PI, M_PI);
+    if (!(joint.lower < joint.upper))
+      problems->Add(joint.limit_line, "{}: <limit> lower = {:.6g} must be less than upper = {:.6g}",
+                    element, joint.lower, joint.upper);
+  }
+  if (!(joint.effort > 0))
+    problems->Add(joint.limit_line, "{}: <limit> effort [N m] = {:.6g}; must be > 0", element,
+                  joint.effort);
+}
+
+}  // namespace
+
+HandTree::Coupling HandTree::CouplingOf(int j) const {
+  Coupling c{j, 1, 0};
+  for (std::size_t step = 0; step <= file_.joints.size(); ++step) {
+    const std::optional<UrdfMimic>& mimic = joint(c.driver).mimic;
+    if (!mimic) return c;
+    const int next = file_.FindJoint(mimic->joint);
+    if (next < 0) break;
+    c = {next, c.ratio * mimic->multiplier, c.ratio * mimic->offset + c.offset};
+  }
+  return {-1, 1, 0};
+}
+
+std::optional<double> HandTree::LockedAt(int j) const {
+  if (joint(j).type == Type::kFixed) return 0.0;
+  const auto own = layout_.locked.find(joint(j).name);
+  if (own != layout_.locked.end()) return own->second;
+  if (!joint(j).mimic) return {};
+  const Coupling c = CouplingOf(j);
+  if (c.driver < 0) return {};
+  if (joint(c.driver).type == Type::kFixed) return c.offset;
+  const auto driver = layout_.locked.find(joint(c.driver).name);
+  if (driver == layout_.locked.end()) return {};
+  return c.ratio * driver->second + c.offset;
+}
+
+Isometry3d HandTree::PoseAt(int j, double angle) const {
+  Isometry3d X = joint(j).X_PJ;
+  if (joint(j).type != Type::kFixed)
+    X.linear() = X.linear() * Eigen::AngleAxisd(angle, joint(j).axis).toRotationMatrix();
+  return X;
+}
+
+void HandTree::AddBodyOf(int link_index, std::set<int>* group) const {
+  int up = link(link_index).parent_joint;
+  while (up >= 0 && LockedAt(up)) {
+    link_index = joint(up).parent;
+    up = link(link_index).parent_joint;
+  }
+  AddFixed(link_index, group);
+}
+
+void HandTree::AddFixed(int link_index, std::set<int>* group) const {
+  group->insert(link_index);
+  for (const int j : link(link_index).child_joints)
+    if (LockedAt(j)) AddFixed(joint(j).child, group);
+}
+
+void HandTree::CheckMimic(int j, Problems* problems) const {
+  const UrdfJoint& in = joint(j);
+  const std::string element = JointElement(in.name);
+  if (file_.FindJoint(in.mimic->joint) < 0) {
+    problems->Add(in.line, "{}: <mimic> joint = {}: there is no such joint", element,
+                  Shown(in.mimic->joint));
+    return;
+  }
+  const Coupling c = CouplingOf(j);
+  if (c.driver < 0)
+    problems->Add(in.line, "{}: <mimic> leads in a ring or to a joint that is not there", element);
+  else if (!(std::abs(c.ratio) >= 1e-3 && std::abs(c.ratio) <= 100))
+    problems->Add(in.line, "{}: <mimic> multiplier = {:.6g}; allowed are sizes of 0.001 .. 100",
+                  element, c.ratio);
+}
+
+void HandTree::Check(Problems* problems) const {
+  for (std::size_t k = 0; k < file_.joints.size(); ++k) {
+    const UrdfJoint& in = file_.joints[k];
+    const std::string element = JointElement(in.name);
+    if (in.type == Type::kFixed) continue;
+    if (in.type != Type::kRevolute && in.type != Type::kContinuous) {
+      problems->Add(in.line,
+                    "{}: type \"{}\" is not supported; allowed are revolute and fixed, and "
+                    "continuous{}",
+                    element, in.type_name.substr(0, 40),
+                    in.type == Type::kPrismatic
+                        ? " (a sliding finger cannot be simulated; lock it in the scenario's "
+                          "[locked_deg] only if it turns)"
+                        : "");
+      continue;
+    }
+    if (in.mimic) {
+      CheckMimic(static_cast<int>(k), problems);
+      continue;
+    }
+    if (layout_.locked.contains(in.name)) continue;
+    CheckLimits(in, element, problems);
+  }
+  for (const auto& [name, coupling] : layout_.coupled)
+    if (file_.FindJoint(name) < 0)
+      problems->Add(0, "the scenario couples {}: there is no such joint", JointElement(name));
+  for (const auto& [name, angle] : layout_.locked)
+    if (file_.FindJoint(name) < 0)
+      problems->Add(0, "the scenario locks {}: there is no such joint", JointElement(name));
+  for (const auto& finger : layout_.fingers) {
+    if (file_.FindLink(finger.tip_link) >= 0) continue;
+    std::set<std::string> names;
+    for (const UrdfLink& link : file_.links) names.insert(link.name);
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    problems->Add(0, "finger \"{}\": there is no link \"{}\"; links are {}", finger.name,
+                  finger.tip_link, list);
+  }
+}
+
+}  // namespace regrasp

@@ -1,0 +1,52 @@
+#pragma once
+
+/// What moves what in a hand's URDF: couplings by <mimic>, joints locked by the scenario, links
+/// that are one body. Used only by the hand's loader.
+
+#include <optional>
+#include <set>
+
+#include "core/hand/problems.h"
+#include "core/hand/urdf.h"
+#include "core/hand/urdf_file.h"
+
+namespace regrasp {
+
+class HandTree {
+ public:
+  /// Both are kept by reference.
+  HandTree(const UrdfFile& file, const HandLayout& layout) : file_(file), layout_(layout) {}
+
+  const UrdfJoint& joint(int j) const { return file_.joints[static_cast<std::size_t>(j)]; }
+  const UrdfLink& link(int l) const { return file_.links[static_cast<std::size_t>(l)]; }
+
+  struct Coupling {
+    int driver = -1;
+    double ratio = 1, offset = 0;
+  };
+  /// The joint that finally drives joint j, through every <mimic>; j itself where it has a drive of
+  /// its own; -1 where they lead in a ring or nowhere.
+  Coupling CouplingOf(int j) const;
+
+  /// The angle [rad] at which the joint is held, if it does not move: it is fixed or locked, or its
+  /// driver is.
+  std::optional<double> LockedAt(int j) const;
+
+  /// Pose of the child link in the parent link with the joint at an angle.
+  Isometry3d PoseAt(int j, double angle) const;
+
+  /// Adds every link of the body that carries `link`.
+  void AddBodyOf(int link, std::set<int>* group) const;
+
+  /// Adds what is wrong with the joints and with what the layout names.
+  void Check(Problems* problems) const;
+
+ private:
+  void CheckMimic(int j, Problems* problems) const;
+  void AddFixed(int link, std::set<int>* group) const;
+
+  const UrdfFile& file_;
+  const HandLayout& layout_;
+};
+
+}  // namespace regrasp

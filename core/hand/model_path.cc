@@ -1,0 +1,93 @@
+#include "core/hand/model_path.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <set>
+#include <system_error>
+
+namespace regrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+bool IsDirectory(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool EndsInUrdf(const std::string& name) {
+  std::string suffix = fs::path(name).extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  return suffix == ".urdf";
+}
+
+}  // namespace
+
+std::vector<fs::path> ModelSearchPath(const std::string& models_dir) {
+  std::vector<fs::path> path;
+  const auto add = [&](const fs::path& directory) {
+    std::error_code ignored;
+    const fs::path clean = fs::weakly_canonical(directory, ignored);
+    if (IsDirectory(clean) && std::find(path.begin(), path.end(), clean) == path.end())
+      path.push_back(clean);
+  };
+  if (!models_dir.empty()) {
+    if (!IsDirectory(models_dir))
+      throw ModelError(fmt::format("{}: models directory not found", models_dir));
+    add(models_dir);
+  }
+  if (const char* named = std::getenv("REGRASP_MODELS_DIR"); named != nullptr && *named != '\0') {
+    if (!IsDirectory(named))
+      throw ModelError(fmt::format("{}: $REGRASP_MODELS_DIR is not a directory", named));
+    add(named);
+  }
+  add(REGRASP_SOURCE_MODELS_DIR);
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  if (!program.empty()) add(program.parent_path().parent_path() / "share/regrasp/models");
+  add(REGRASP_INSTALLED_MODELS_DIR);
+  return path;
+}
+
+fs::path FindModel(const std::string& name, const char* kind,
+                   const std::vector<fs::path>& search_path) {
+  if (EndsInUrdf(name)) {
+    if (IsFile(name)) return name;
+    throw ModelError(fmt::format("{}: file not found", name));
+  }
+  const bool names_file = name.find('/') != std::string::npos && fs::path(name).has_extension();
+  if (names_file || IsFile(name))
+    throw ModelError(fmt::format("{}: a model file must end in .urdf", name));
+  // A name is one path component, so that it cannot lead out of the search path.
+  if (!name.empty() && fs::path(name).filename() == name)
+    for (const fs::path& directory : search_path) {
+      const fs::path file = directory / kind / (name + ".urdf");
+      if (IsFile(file)) return file;
+    }
+  std::vector<std::string> directories;
+  for (const fs::path& directory : search_path) directories.push_back((directory / kind).string());
+  throw ModelError(fmt::format("there is no model \"{}\" in {}; available are {}", name,
+                               fmt::join(directories, ", "),
+                               fmt::join(ListModels(search_path, kind), ", ")));
+}
+
+std::vector<std::string> ListModels(const std::vector<fs::path>& search_path, const char* kind) {
+  std::set<std::string> names;
+  for (const fs::path& directory : search_path) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(directory / kind, ignored))
+      if (entry.path().extension() == ".urdf") names.insert(entry.path().stem().string());
+  }
+  return {names.begin(), names.end()};
+}
+
+}  // namespace regrasp

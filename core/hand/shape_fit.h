@@ -1,0 +1,31 @@
+#pragma once
+
+/// Shapes fitted to meshes: the simulation knows capsules and boxes only, because its contacts of
+/// round links are exact and smooth.
+
+#include <optional>
+#include <string>
+
+#include "core/common/frames.h"
+#include "core/hand/hand_model.h"
+#include "core/hand/mesh.h"
+
+namespace regrasp {
+
+struct FittedShape {
+  Shape shape;
+  std::string kind;    ///< "sphere", "capsule" or "box"
+  double error_m = 0;  ///< largest distance of a point of the mesh from the shape's surface
+  double rms_m = 0;
+};
+
+/// The capsule or box that comes nearest to all of the surface, in the mesh's frame. Least squares
+/// of the distance over points spread evenly over the surface; deterministic.
+FittedShape FitShape(const TriangleMesh& mesh);
+
+/// The capsule or sphere nearest to the rounded end that lies farthest along `toward` (unit): the
+/// part of the convex hull within one half-width of the end, which is what touches objects. The
+/// errors are of that part. The end of the capsule that makes the tip is b_L.
+FittedShape FitFingertip(const TriangleMesh& mesh, const Vector3d& toward);
+
+}  // namespace regrasp

@@ -1,0 +1,188 @@
+/// One kind of mistake a row: each is refused with the file, the line where it has one, the value
+/// and what is allowed. Several mistakes in one file are told at once.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/unit/hand/model_files.h"
+
+namespace regrasp {
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct Row {
+  const char *from, *to;
+  Words words;
+};
+
+class MalformedTest : public LoaderTest {
+ protected:
+  void ExpectAll(const Words& words) const {
+    try {
+      Load();
+      ADD_FAILURE() << "was not refused";
+    } catch (const ModelError& error) {
+      for (const std::string& word : words)
+        EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
+            << word << " not in: " << error.what();
+    }
+  }
+};
+
+TEST_F(MalformedTest, Hands) {
+  const Row rows[] = {
+      {"radius=\"0.005\"",
+       "radius=\"0,005\"",
+       {"mini.urdf:10", "\"0,005\"", "finite number", "point"}},
+      {"size=\"0.01 0.01 0.04\"",
+       "size=\"${w} 0.01 0.04\"",
+       {"mini.urdf:6", "link \"upper\"", "<box> size", "${w}", "xacro"}},
+      {"size=\"0.01 0.01 0.04\"",
+       "size=\"0.01 0.04\"",
+       {"mini.urdf:6", "\"0.01 0.04\"", "3 finite"}},
+      {"size=\"0.01 0.01 0.04\"", "size=\"0.01 -0.01 0.04\"", {"mini.urdf:6", "-0.01", "> 0"}},
+      {"<box size=\"0.01 0.01 0.04\"/>",
+       "<capsule radius=\"0.01\" length=\"0.04\"/>",
+       {"mini.urdf:6", "<capsule> is unknown", "sphere, box, cylinder"}},
+      {"<box size=\"0.01 0.01 0.04\"/>", "<box/>", {"mini.urdf:6", "<box> size is missing"}},
+      {"<geometry><box size=\"0.01 0.01 0.04\"/></geometry>", "", {"mini.urdf:6", "no <geometry>"}},
+      {"<box size=\"0.01 0.01 0.04\"/>",
+       "<mesh filename=\"a.obj\" scale=\"0.001\"/>",
+       {"mini.urdf:6", "scale = \"0.001\"", "3 finite numbers", "0.001 0.001 0.001"}},
+      {"<box size=\"0.01 0.01 0.04\"/>",
+       "<mesh filename=\"a.obj\" scale=\"1 0 1\"/>",
+       {"mini.urdf:6", "scale", "no number may be 0"}},
+      {"<box size=\"0.01 0.01 0.04\"/>", "<mesh/>", {"mini.urdf:6", "filename is missing"}},
+      {"<box size=\"0.01 0.01 0.04\"/>",
+       "<mesh filename=\"http://a/b.obj\"/>",
+       {"mini.urdf:6", "http://a/b.obj", "package://"}},
+      {"<box size=\"0.01 0.01 0.04\"/>",
+       "<mesh filename=\"package://nowhere/b.obj\"/>",
+       {"mini.urdf:6", "package://nowhere/b.obj", "$ROS_PACKAGE_PATH"}},
+      {"<mass value=\"0.03\"/>", "<mass value=\"-1\"/>", {"mini.urdf:4", "<mass> = -1", "> 0"}},
+      {"<mass value=\"0.03\"/>", "<mass/>", {"mini.urdf:4", "<mass> value is missing"}},
+      {"<mass value=\"0.03\"/>", "", {"mini.urdf:4", "no <mass>"}},
+      {"<mass value=\"0.03\"/>", "<mass value=\"1e999\"/>", {"mini.urdf:4", "1e999", "finite"}},
+      {"ixy=\"0\" ", "", {"mini.urdf:5", "<inertia> ixy is missing"}},
+      {"ixx=\"4e-6\"", "ixx=\"1e-6kg\"", {"mini.urdf:5", "\"1e-6kg\"", "finite number"}},
+      {"ixx=\"4e-6\"", "ixx=\"-4e-6\"", {"mini.urdf:5", "-4e-06", "--inertia-from-shape"}},
+      {"izz=\"1e-6\"", "izz=\"1e-5\"", {"mini.urdf:5", "sum of the other two"}},
+      {"xyz=\"0 0 0.02\"", "xyz=\"0 0\"", {"mini.urdf:4", "<origin> xyz", "\"0 0\""}},
+      {"xyz=\"0 0 0.02\"", "xyz=\"0 0 20\"", {"mini.urdf:4", "20", "-10 .. 10"}},
+      {"type=\"revolute\"",
+       "type=\"prismatic\"",
+       {"mini.urdf:12", "prismatic", "revolute and fixed"}},
+      {"type=\"revolute\"",
+       "type=\"floating\"",
+       {"mini.urdf:12", "floating", "revolute and fixed"}},
+      {"type=\"revolute\"", "", {"mini.urdf:12", "joint \"A\"", "type is missing"}},
+      {"<parent link=\"palm\"/>",
+       "<parent link=\"plam\"/>",
+       {"mini.urdf:12", "\"plam\"", "no such link"}},
+      {"<parent link=\"palm\"/>", "", {"mini.urdf:12", "<parent> link is missing"}},
+      {"<axis xyz=\"2 0 0\"/>", "<axis xyz=\"0 0 0\"/>", {"mini.urdf:13", "must not be zero"}},
+      {"<axis xyz=\"2 0 0\"/>", "<axis/>", {"mini.urdf:13", "<axis> xyz is missing"}},
+      {"lower=\"0\"", "lower=\"zero\"", {"mini.urdf:13", "lower = \"zero\"", "finite number"}},
+      {"lower=\"0\"", "lower=\"2\"", {"mini.urdf:13", "lower = 2", "less than upper = 1.5"}},
+      {"lower=\"0\"", "lower=\"-180\"", {"mini.urdf:13", "-180", "-3.14159 .. 3.14159"}},
+      {"effort=\"2\" ", "", {"mini.urdf:13", "effort is missing"}},
+      {"effort=\"2\"", "effort=\"0\"", {"mini.urdf:13", "effort [N m] = 0", "> 0"}},
+      {"damping=\"0.05\"", "damping=\"-0.05\"", {"mini.urdf:13", "damping = -0.05", ">= 0"}},
+      {"<axis xyz=\"2 0 0\"/>",
+       "<axis xyz=\"2 0 0\"/><mimic joint=\"C\"/>",
+       {"mini.urdf:12", "<mimic> joint = \"C\"", "no such joint"}},
+      {"<axis xyz=\"2 0 0\"/>",
+       "<axis xyz=\"2 0 0\"/><mimic joint=\"B\" multiplier=\"0\"/>",
+       {"mini.urdf:12", "multiplier = 0", "0.001 .. 100"}},
+      {"<link name=\"upper\">", "<link>", {"mini.urdf:3", "<link> name is missing"}},
+      {"<link name=\"upper\">", "<link name=\"tip\">", {"mini.urdf:8", "\"tip\" is used twice"}},
+      {"</link>\n  <link name=\"tip\">",
+       "\n  <link name=\"tip\">",
+       {"mini.urdf:16", "not a valid URDF"}},
+      {"<robot name", "<model name", {"mini.urdf", "not a valid URDF"}},
+      {"\"mini\"", "\"mini", {"mini.urdf:1", "not a valid URDF", "does not end"}},
+      {"<link name=\"palm\"/>", "<link name=\"palm&x;\"/>", {"mini.urdf:2", "entity \"&x;\""}},
+      {"<robot name",
+       "<!DOCTYPE r [<!ENTITY a \"b\">]><robot name",
+       {"mini.urdf:1", "internal subset"}},
+      {"<link name=\"palm\"/>", "<link name=\"palm\"/>\xff text", {}},
+  };
+  for (const Row& row : rows) {
+    SCOPED_TRACE(std::string(row.from) + " -> " + row.to);
+    EditHand(row.from, row.to);
+    if (row.words.empty())
+      EXPECT_NO_THROW(Load());  // text between elements is nobody's business
+    else
+      ExpectAll(row.words);
+  }
+}
+
+TEST_F(MalformedTest, Scenarios) {
+  const Row rows[] = {
+      {"[q_preshape_deg]",
+       "[palm]\nrotation_deg = [0, 90]\n[q_preshape_deg]",
+       {"mini.toml:10", "rotation_deg", "3 numbers"}},
+      {"[q_preshape_deg]",
+       "[palm]\nrotate = [0, 90, 0]\n[q_preshape_deg]",
+       {"mini.toml:10", "unknown key \"rotate\"", "rotation_deg"}},
+      {"[q_preshape_deg]", "[locked_deg]\nC = 0\n[q_preshape_deg]", {"\"C\"", "no such joint"}},
+      {"[q_preshape_deg]",
+       "[locked_deg]\nB = 999\n[q_preshape_deg]",
+       {"mini.toml:10", "999", "360"}},
+      {"[q_preshape_deg]",
+       "[coupled.C]\ndriver = \"A\"\n[q_preshape_deg]",
+       {"couples joint \"C\"", "no such joint"}},
+      {"[q_preshape_deg]", "[coupled.B]\nratio = 2\n[q_preshape_deg]", {"\"driver\" is missing"}},
+      {"object = \"ball\"",
+       "object = \"ball\"\ninertia_from_shape = 1",
+       {"mini.toml:2", "true or false"}},
+      {"object = \"ball\"", "object = 7", {"mini.toml:1", "object must be a string"}},
+      {"[object_pose]", "object_pose = 3\n[pose]", {"mini.toml:4", "object_pose must be a table"}},
+      {"armature_kg_m2 = 1e-4", "", {"\"armature_kg_m2\" is missing"}},
+      {"armature_kg_m2 = 1e-4", "armature_kg_m2 = inf", {"mini.toml:3", "inf", "0 .. 0.1"}},
+  };
+  for (const Row& row : rows) {
+    SCOPED_TRACE(std::string(row.from) + " -> " + row.to);
+    EditScenario(row.from, row.to);
+    ExpectAll(row.words);
+  }
+  Write("hands/mini.toml", "object = " + std::string(5000, '['));
+  ExpectAll({"mini.toml", "nested deeper than 32"});
+  Write("hands/mini.toml", std::string("object = \"ball\"\0", 16) + kScenarioToml);
+  ExpectAll({"mini.toml", "zero byte"});
+}
+
+TEST_F(MalformedTest, TellsAllMistakesOfAFileAtOnce) {
+  std::string text = Replaced(kHandUrdf, "size=\"0.01 0.01 0.04\"", "size=\"0,01 0,01 0,04\"");
+  text = Replaced(text, "<mass value=\"0.03\"/>", "<mass value=\"x\"/>");
+  text = Replaced(text, "<axis xyz=\"2 0 0\"/>", "<axis xyz=\"a b c\"/>");
+  Write("hands/mini.urdf", text);
+  ExpectAll({"3 errors", "mini.urdf:4", "mini.urdf:6", "mini.urdf:13"});
+  text = Replaced(kHandUrdf, "effort=\"2\"", "effort=\"0\"");
+  text = Replaced(text, "lower=\"-0.5\"", "lower=\"5\"");
+  Write("hands/mini.urdf", text);
+  ExpectAll({"3 errors", "mini.urdf:13", "mini.urdf:15", "effort", "lower [rad] = 5"});
+  Write("hands/mini.urdf", kHandUrdf);
+  Write("hands/mini.toml", Replaced(Replaced(kScenarioToml, "-9.81", "\"g\""), "1e-4", "1"));
+  ExpectAll({"2 errors", "mini.toml:2", "mini.toml:3"});
+}
+
+TEST_F(MalformedTest, NothingAfterAZeroByteIsBelieved) {
+  std::string text = kHandUrdf;
+  text.insert(20, 1, '\0');
+  Write("hands/mini.urdf", text);
+  ExpectAll({"mini.urdf", "zero byte"});
+}
+
+TEST_F(MalformedTest, DeepFilesAreRefusedWithoutRecursion) {
+  std::string text;
+  for (int i = 0; i < 100000; ++i) text += "<a>";
+  Write("hands/mini.urdf", text);
+  ExpectAll({"mini.urdf:1", "nested deeper than 64"});
+}
+
+}  // namespace
+}  // namespace regrasp
