@@ -92,7 +92,9 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
       Vector3d rate = d / (estimate.object_scale + own.radius);
       for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));
-        rate += estimate.kinematics.axis_W[model.joints[k]].cross(d).dot(n) * row;
+        const Vector3d turn =
+            AngularRate(hand, estimate.kinematics, model.joints[k], model.tip_link);
+        rate += turn.cross(d).dot(n) * row;
       }
       constexpr bool kMustLeave = true;  // the finger would roll off over the side of its link
       AddWall(rate, (facing - parameters.least_facing) / rate.norm(), n, walls, kMustLeave);
@@ -117,11 +119,9 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
         // link, with q' = J⁺ v.
         Vector3d rate = Vector3d::Zero();
         for (std::size_t k = 0; k < model.joints.size(); ++k) {
-          const int j = model.joints[k];
           const Vector3d v =
-              estimate.kinematics.axis_W[j].cross(closest.on_one - estimate.kinematics.p_WJ[j]);
+              PointRate(hand, estimate.kinematics, model.joints[k], own_link, closest.on_one);
           rate += v.dot(between) / distance * (inverse * f.J.col(static_cast<Eigen::Index>(k)));
-          if (hand.joints[j].child_link == own_link) break;
         }
         if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), f.normal_W, walls);
       }

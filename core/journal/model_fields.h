@@ -59,6 +59,9 @@ void Fields(A& a, Joint& j) {
   a("effort", j.effort);
   a("damping", j.damping);
   a("armature", j.armature);
+  a("driver", j.driver);
+  a("ratio", j.ratio);
+  a("offset", j.offset);
 }
 
 template <typename A>
@@ -75,6 +78,7 @@ void Fields(A& a, HandModel& h) {
   a("name", h.name);
   a("links", h.links);
   a("joints", h.joints);
+  a("num_coupled", h.num_coupled);
   a("fingers", h.fingers);
 }
 

@@ -34,7 +34,7 @@ int PartnerOf(const HandModel& hand, int first) {
   const Joint& j1 = hand.joints[first];
   const Link& middle = hand.links[j1.child_link];
   int second = -1;
-  for (int k = 0; k < hand.num_joints(); ++k) {
+  for (int k = 0; k < static_cast<int>(hand.joints.size()); ++k) {
     if (hand.joints[k].parent_link != j1.child_link) continue;
     if (second >= 0) return -1;
     second = k;
@@ -58,7 +58,8 @@ Articulation PlanBodies(const HandModel& hand, bool merge) {
   std::vector<Matrix3d> armatures;
   std::vector<bool> merged(hand.joints.size(), false);
 
-  for (int i = 0; i < hand.num_joints(); ++i) {
+  for (std::size_t l = 1; l < hand.links.size(); ++l) {
+    const int i = hand.links[l].parent_joint;
     if (merged[i]) continue;
     const Joint& j1 = hand.joints[i];
     const int second = merge ? PartnerOf(hand, i) : -1;

@@ -10,6 +10,7 @@
 #include "core/world/articulation.h"
 #include "core/world/fast_step.h"
 #include "core/world/ode_world.h"
+#include "core/world/transmission.h"
 
 namespace regrasp {
 namespace {
@@ -41,14 +42,17 @@ struct World::Impl {
   void CheckInputs() const;
   void CheckState() const;
   void UpdateTorques();
+  void Show();
   void FindContacts();
   void Advance();
 
-  HandModel hand;
   ObjectModel object;
   WorldConfig config;
+  Transmissions transmissions;
+  const HandModel& hand;  // the plant: every joint on its own
   Articulation articulation;
   std::vector<int> finger_of_tip;
+  StartOverlap start_overlap;
   OdeWorld ode;
   FastStep fast;
 
@@ -65,7 +69,8 @@ struct World::Impl {
   FixedVector<LinkHit, kMaxLinkHits> link_hits;
   FixedVector<ObjectContact, kMaxObjectContacts> last_contacts;
 
-  WorldState state;
+  WorldState state;  // of the plant
+  WorldState shown;  // with coupled joints: the driven ones only
   StageTimes times;
   bool measure = false;
   bool faulted = false;
@@ -74,28 +79,43 @@ struct World::Impl {
 
 World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
                   const WorldConfig& config_in, const JointVector& q0, const Isometry3d& X_WO0)
-    : hand(hand_in),
-      object(object_in),
+    : object(object_in),
       config(config_in),
+      transmissions(hand_in, kStopStiffness, kStopDamping, config.dt),
+      hand(transmissions.plant()),
       articulation(PlanBodies(hand, config.merge_universal)),
-      ode(hand, articulation, object, config, q0, X_WO0),
+      ode(hand, articulation, object, config, transmissions.AnglesToPlant(q0), X_WO0),
       fast(hand, articulation, object, config) {
   finger_of_tip.assign(hand.links.size(), -1);
   for (int f = 0; f < hand.num_fingers(); ++f) finger_of_tip[hand.fingers[f].tip_link] = f;
-  torque = joint_torque = JointVector::Zero(hand.num_joints());
+  torque = JointVector::Zero(q0.size());
+  joint_torque = JointVector::Zero(hand.num_joints());
   friction = object.friction;
   mass = object.mass;
-  state.torque = torque;
-  state.q = q0;
+  state.torque = joint_torque;
+  state.q = transmissions.AnglesToPlant(q0);
   state.qdot = JointVector::Zero(hand.num_joints());
   state.p_WO = X_WO0.translation();
   state.q_WO = Quaterniond(X_WO0.linear()).normalized();
-  const KinematicsData& links = fast.SetPosture(q0);
+  const KinematicsData& links = fast.SetPosture(state.q);
   if (config.stepper == Stepper::kFast) ode.SetPoses(links, state);
+  const std::vector<Isometry3d> X_WL(
+      links.X_WL.begin(), links.X_WL.begin() + static_cast<std::ptrdiff_t>(hand.links.size()));
+  start_overlap = DeepestOverlap(hand, X_WL, object, X_WO0);
+  Show();
+}
+
+void World::Impl::Show() {
+  if (!transmissions.any()) return;
+  shown = state;
+  shown.q = transmissions.FromPlant(state.q);
+  shown.qdot = transmissions.FromPlant(state.qdot);
+  shown.torque = transmissions.FromPlant(state.torque);
 }
 
 void World::Impl::CheckInputs() const {
-  if (torque.size() != hand.num_joints()) throw WorldFault("wrong number of joint torques");
+  if (torque.size() != hand.num_joints() - transmissions.count())
+    throw WorldFault("wrong number of joint torques");
   if (!torque.allFinite()) throw WorldFault("joint torque is not finite");
   if (!push_W.allFinite()) throw WorldFault("push force is not finite");
   if (!gravity_W.allFinite()) throw WorldFault("gravity is not finite");
@@ -112,13 +132,15 @@ void World::Impl::CheckState() const {
 }
 
 void World::Impl::UpdateTorques() {
+  state.torque = transmissions.ToPlant(torque);
   for (int i = 0; i < hand.num_joints(); ++i) {
     const Joint& joint = hand.joints[i];
-    state.torque[i] = std::clamp(torque[i], -joint.effort, joint.effort);
+    state.torque[i] = std::clamp(state.torque[i], -joint.effort, joint.effort);
     joint_torque[i] = state.torque[i] - joint.damping * state.qdot[i];
     const double beyond = state.q[i] - std::clamp(state.q[i], joint.lower, joint.upper);
     if (beyond != 0) joint_torque[i] -= kStopStiffness * beyond + kStopDamping * state.qdot[i];
   }
+  transmissions.AddTorques(state.q, state.qdot, &joint_torque);
 }
 
 // The contacts of this step. Each keeps the force that the last step found between the same two
@@ -186,6 +208,7 @@ StepStatus World::Step() {
     w.FindContacts();
     const double t1 = w.measure ? Now() : 0;
     w.Advance();
+    w.Show();
     const double t2 = w.measure ? Now() : 0;
     w.times = {t1 - t0, t2 - t1};
     return StepStatus::kOk;
@@ -200,7 +223,10 @@ StepStatus World::Step() {
 }
 
 const char* World::fault_message() const { return impl_->message; }
-const WorldState& World::state() const { return impl_->state; }
+const WorldState& World::state() const {
+  return impl_->transmissions.any() ? impl_->shown : impl_->state;
+}
+const StartOverlap& World::start_overlap() const { return impl_->start_overlap; }
 double World::mass_kg() const { return impl_->mass; }
 double World::friction() const { return impl_->friction; }
 const Vector3d& World::gravity_W() const { return impl_->gravity_W; }
@@ -220,8 +246,8 @@ bool World::Remember(const WorldMemory& m) {
   Impl& w = *impl_;
   const auto n = static_cast<Eigen::Index>(w.hand.num_joints());
   const bool exact = w.config.stepper == Stepper::kExact;
-  if (w.faulted || m.torque.size() != n || m.state.q.size() != n || m.state.qdot.size() != n ||
-      m.state.torque.size() != n)
+  if (w.faulted || m.torque.size() != n - w.transmissions.count() || m.state.q.size() != n ||
+      m.state.qdot.size() != n || m.state.torque.size() != n)
     return false;
   if (exact ? !w.ode.Remember(m.bodies) : !m.bodies.bodies.empty()) return false;
   w.state = m.state;
@@ -232,6 +258,7 @@ bool World::Remember(const WorldMemory& m) {
   w.mass = m.mass;
   w.stand_in = m.stand_in;
   if (!exact) w.ode.SetPoses(w.fast.SetPosture(w.state.q), w.state);
+  w.Show();
   return true;
 }
 

@@ -15,6 +15,7 @@
 #include "core/hand/hand_model.h"
 #include "core/hand/object_model.h"
 #include "core/world/contact_solver.h"
+#include "core/world/start_overlap.h"
 
 namespace regrasp {
 
@@ -164,6 +165,9 @@ class World {
   double mass_kg() const;
   double friction() const;
   const Vector3d& gravity_W() const;
+
+  /// What the object overlapped when the world was built.
+  const StartOverlap& start_overlap() const;
 
   /// Largest distance by which the two bodies of a joint have come apart at its anchor [m]: how
   /// well the stepper keeps the hand together.

@@ -1,12 +1,19 @@
 #include "core/session/activity/grasp.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace regrasp {
 
 Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) {
-  if (context.world.stand_in()) return {};
-  return {Verdict::Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+  if (!context.world.stand_in())
+    return {Verdict::Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+  const StartOverlap& overlap = context.world.start_overlap();
+  if (overlap.depth <= kStartOverlap) return {};
+  std::snprintf(refusal_, sizeof(refusal_), "the object begins %.1f mm inside the link %.60s",
+                1e3 * overlap.depth, context.now.hand.links[overlap.link].name.c_str());
+  return {Verdict::Kind::kBadState, refusal_,
+          "another object, or object_pose in the hand's scenario"};
 }
 
 void GraspActivity::Start(const Command&, const ActivityContext& context) {

@@ -19,6 +19,7 @@ class GraspActivity : public Activity {
 
  private:
   GraspSequence sequence_;
+  char refusal_[128] = "";
 };
 
 }  // namespace regrasp

@@ -1,0 +1,135 @@
+#include "core/world/start_overlap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/world/surface_mesh.h"
+
+namespace regrasp {
+namespace {
+
+/// Distance of a point from a box; negative inside.
+double ToBox(const Vector3d& p, const Vector3d& half) {
+  const Vector3d beyond = p.cwiseAbs() - half;
+  return beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
+}
+
+/// How far points lie from an object's surface; negative inside.
+class ObjectDistance {
+ public:
+  explicit ObjectDistance(const ObjectModel& object) : object_(object) {
+    if (object.kind == ObjectModel::Kind::kMesh)
+      surface_.emplace(object.vertices_O, object.triangles);
+  }
+
+  double operator()(const Vector3d& p_O) const {
+    switch (object_.kind) {
+      case ObjectModel::Kind::kSphere:
+        return p_O.norm() - object_.radius;
+      case ObjectModel::Kind::kBox:
+        return ToBox(p_O, object_.half_extents);
+      case ObjectModel::Kind::kCapsule: {
+        const double along = std::clamp(p_O.z(), -object_.half_length, object_.half_length);
+        return (p_O - along * Vector3d::UnitZ()).norm() - object_.radius;
+      }
+      case ObjectModel::Kind::kMesh:
+        break;
+    }
+    const double far = 2 * object_.bounding_radius + p_O.norm();
+    const double distance = surface_->ClosestToSegment(p_O, p_O, far)->distance;
+    return Inside(p_O) ? -distance : distance;
+  }
+
+ private:
+  /// The solid angle under which the surface is seen is 4 pi from inside, 0 from outside
+  /// [Van Oosterom, Strackee 1983].
+  bool Inside(const Vector3d& p) const {
+    double angle = 0;
+    for (const Eigen::Vector3i& t : object_.triangles) {
+      const Vector3d a = object_.vertices_O[t[0]] - p, b = object_.vertices_O[t[1]] - p,
+                     c = object_.vertices_O[t[2]] - p;
+      const double la = a.norm(), lb = b.norm(), lc = c.norm();
+      angle += 2 * std::atan2(a.dot(b.cross(c)),
+                              la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    }
+    return angle > 2 * M_PI;
+  }
+
+  const ObjectModel& object_;
+  std::optional<SurfaceMesh> surface_;
+};
+
+/// Points of the object's surface or core, and how far around each the object reaches.
+struct Core {
+  std::vector<Vector3d> points_O;
+  double radius = 0;
+};
+
+Core CoreOf(const ObjectModel& object) {
+  switch (object.kind) {
+    case ObjectModel::Kind::kSphere:
+      return {{Vector3d::Zero()}, object.radius};
+    case ObjectModel::Kind::kCapsule: {
+      Core core{{}, object.radius};
+      for (int k = -4; k <= 4; ++k) core.points_O.emplace_back(0, 0, k * object.half_length / 4);
+      return core;
+    }
+    case ObjectModel::Kind::kBox: {
+      Core core{{Vector3d::Zero()}, 0};
+      for (int i = 0; i < 8; ++i)
+        core.points_O.push_back(object.half_extents.cwiseProduct(
+            Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+      return core;
+    }
+    case ObjectModel::Kind::kMesh:
+      break;
+  }
+  return {object.vertices_O, 0};
+}
+
+double DepthOf(const Shape& shape, const Isometry3d& X_OL, const ObjectDistance& distance,
+               const Core& core) {
+  double depth = -1;
+  if (shape.kind == Shape::Kind::kCapsule) {
+    const int steps = shape.a_L == shape.b_L ? 0 : 8;
+    for (int k = 0; k <= steps; ++k)
+      depth = std::max(
+          depth, shape.radius - distance(X_OL * (shape.b_L + k / 8.0 * (shape.a_L - shape.b_L))));
+    return depth;
+  }
+  const Isometry3d X_OB = X_OL * shape.X_LB;
+  for (int i = 0; i < 27; ++i)
+    depth = std::max(depth, -distance(X_OB * shape.half_extents.cwiseProduct(
+                                                 Vector3d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1))));
+  const Isometry3d X_BO = X_OB.inverse();
+  for (const Vector3d& p_O : core.points_O)
+    depth = std::max(depth, core.radius - ToBox(X_BO * p_O, shape.half_extents));
+  return depth;
+}
+
+double Bound(const Shape& shape) {
+  return shape.kind == Shape::Kind::kBox
+             ? shape.X_LB.translation().norm() + shape.half_extents.norm()
+             : std::max(shape.a_L.norm(), shape.b_L.norm()) + shape.radius;
+}
+
+}  // namespace
+
+StartOverlap DeepestOverlap(const HandModel& hand, const std::vector<Isometry3d>& X_WL,
+                            const ObjectModel& object, const Isometry3d& X_WO) {
+  const ObjectDistance distance(object);
+  const Core core = CoreOf(object);
+  StartOverlap deepest;
+  for (std::size_t l = 0; l < hand.links.size(); ++l) {
+    const Isometry3d X_OL = X_WO.inverse() * X_WL[l];
+    for (const Shape& shape : hand.links[l].shapes) {
+      if (X_OL.translation().norm() > object.bounding_radius + Bound(shape)) continue;
+      const double depth = DepthOf(shape, X_OL, distance, core);
+      if (depth > deepest.depth) deepest = {static_cast<int>(l), depth};
+    }
+  }
+  return deepest;
+}
+
+}  // namespace regrasp

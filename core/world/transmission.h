@@ -1,0 +1,48 @@
+#pragma once
+
+/// Coupled joints in the simulation. The steppers know independent joints only, parents before
+/// children: they get the plant, the hand with every joint on its own, and each coupled joint is
+/// held at ratio q(driver) + offset by an elastic transmission, a spring and damper like those of
+/// the joint stops. A tendon yields by as much.
+
+#include <vector>
+
+#include "core/common/limits.h"
+#include "core/hand/hand_model.h"
+
+namespace regrasp {
+
+class Transmissions {
+ public:
+  /// `stiffness` [N m/rad] and `damping` [N m s/rad] of each; less where the inertias are too small
+  /// for the step `dt` [s]. A spring K and a damper D between the inertias I1 and r² I2 are stable
+  /// in a semi-implicit Euler step where dt² K / I < 4 and dt D / I < 2, 1 / I = 1 / I1 + r² / I2;
+  /// at most a 20th and a quarter of that are taken.
+  Transmissions(const HandModel& hand, double stiffness, double damping, double dt);
+
+  /// The same hand without couplings: joint i moves link i + 1. Fingers name no joints.
+  const HandModel& plant() const { return plant_; }
+  bool any() const { return !springs_.empty(); }
+  int count() const { return static_cast<int>(springs_.size()); }
+
+  /// Values of the driven joints as those of the plant: 0 for coupled joints.
+  JointVector ToPlant(const JointVector& driven) const;
+  /// The same for angles [rad]: coupled joints where their drivers put them.
+  JointVector AnglesToPlant(const JointVector& driven) const;
+  JointVector FromPlant(const JointVector& plant) const;
+
+  /// Adds what the transmissions exert to `torque` [N m]; all of the plant.
+  void AddTorques(const JointVector& q, const JointVector& qdot, JointVector* torque) const;
+
+ private:
+  struct Spring {
+    int joint = -1, driver = -1;  // of the plant
+    double ratio = 1, offset = 0, stiffness = 0, damping = 0;
+  };
+  HandModel plant_;
+  std::vector<int> place_;  // joint of the hand: joint of the plant
+  int num_driven_ = 0;
+  std::vector<Spring> springs_;
+};
+
+}  // namespace regrasp
