@@ -1,5 +1,6 @@
 #include "daemon/daemon.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
@@ -24,7 +25,10 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   service.control.paused = config.paused;
 
   SessionConfig& session = service.control.session;
-  session.model = LoadScenario(config.hand, config.object, service.search_path);
+  service.load.inertia_from_shape = config.inertia_from_shape;
+  service.load.force = config.force;
+  service.load.fill_missing_meshes = config.fill_missing_meshes;
+  session.model = LoadScenario(config.hand, config.object, service.search_path, service.load);
   session.seed = config.seed;
   session.noise = *NoisePreset(config.noise);
   session.world.stepper = config.stepper == "exact" ? Stepper::kExact : Stepper::kFast;
@@ -43,6 +47,8 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
 
 Daemon::Daemon(const DaemonConfig& config, const Limits* limits) : config_(config) {
   ServiceConfig service = MakeServiceConfig(config);
+  for (const ModelWarning& warning : service.control.session.model.report.warnings)
+    spdlog::warn("{}", warning.Line());
   if (const int inherited = InheritedSocket(); inherited >= 0)
     listener_ = std::make_unique<ListenSocket>(inherited);
   else
@@ -98,6 +104,17 @@ SessionConfig MakeSessionConfig(const DaemonConfig& config) {
   return MakeServiceConfig(config).control.session;
 }
 
-void CheckModels(const DaemonConfig& config) { const Session session(MakeSessionConfig(config)); }
+std::vector<std::string> CheckModels(const DaemonConfig& config) {
+  const Session session(MakeSessionConfig(config));
+  std::vector<std::string> warnings;
+  for (const ModelWarning& warning : session.config().model.report.warnings)
+    warnings.push_back(warning.Line());
+  const StartOverlap& overlap = session.world().start_overlap();
+  if (overlap.depth > kStartOverlap)
+    warnings.push_back(fmt::format(
+        "the object begins {:.1f} mm inside the link {}; grasp will refuse", 1e3 * overlap.depth,
+        session.config().model.hand.links[static_cast<std::size_t>(overlap.link)].name));
+  return warnings;
+}
 
 }  // namespace regrasp

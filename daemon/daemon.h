@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "daemon/config/config.h"
 
@@ -44,7 +45,8 @@ class Daemon {
 /// What the configuration makes of a session: models loaded, parameters set. Throws as Daemon does.
 SessionConfig MakeSessionConfig(const DaemonConfig& config);
 
-/// What `--check-config` checks: models load, and session and models fit. Throws as Daemon does.
-void CheckModels(const DaemonConfig& config);
+/// What `--check-config` checks: models load, and session and models fit. Gives the loaders'
+/// warnings. Throws as Daemon does.
+std::vector<std::string> CheckModels(const DaemonConfig& config);
 
 }  // namespace regrasp

@@ -183,7 +183,8 @@ int Main(int argc, char** argv) {
     if (flags.print_config) return Print(ConfigJson(config) + "\n");
     if (flags.bench_s > 0) return Print(Benchmark(config, flags.bench_s) + "\n");
     if (!flags.check) return Serve(config, source);
-    CheckModels(config);
+    for (const std::string& warning : CheckModels(config))
+      fmt::print(stderr, "regraspd: warning: {}\n", warning);
     return Print("configuration ok\n");
   } catch (const ConfigError& e) {
     return Fail(e.what(), "regraspd --print-default-config", ExitCode::kUsage);

@@ -25,18 +25,24 @@ std::vector<Arg> DaemonArgs() {
                .help = help,
                .default_text = default_text};
   };
+  const auto flag = [](const char* key, const char* help) {
+    return Arg{.key = key,
+               .flags = std::string("--") + key,
+               .metavar = "",
+               .kind = ArgKind::kFlag,
+               .help = help};
+  };
   return {
       arg("speed", "X", "times real time, or max", "1"),
       arg("seed", "N", "seed of the run", "1"),
       arg("hand", "NAME|FILE", "hand model"),
       arg("object", "NAME|FILE", "object model"),
       arg("noise", "PRESET", "sensor noise", "paper"),
-      Arg{.key = "paused",
-          .flags = "--paused",
-          .metavar = "",
-          .kind = ArgKind::kFlag,
-          .help = "begin with the clock stopped"},
+      flag("paused", "begin with the clock stopped"),
       arg("models-dir", "DIR", "where models are looked for first"),
+      flag("inertia-from-shape", "compute the object's centre and inertia from its shape"),
+      flag("force", "take an object that cannot exist"),
+      flag("fill-missing-meshes", "a capsule where a hand's mesh file is not there"),
       arg("output-dir", "DIR", "where pictures and records are written"),
       arg("config", "FILE", "configuration of the daemon (TOML)"),
   };

@@ -28,10 +28,13 @@ struct DaemonConfig {
   std::string socket;      ///< "": by rule, see core/protocol/socket_path.h
   std::string output_dir;  ///< "": by rule, see DefaultOutputDir()
   std::uint64_t seed = 1;
-  std::string hand = "shadow";  ///< a name, or a .urdf file
-  std::string object;           ///< a name, or a .urdf file; "": the scenario's
-  std::string models_dir;       ///< searched first; "": only the usual places
-  std::string speed = "1.0";    ///< times real time, or "max"
+  std::string hand = "shadow";       ///< a name, or a .urdf file
+  std::string object;                ///< a name, or a .urdf file; "": the scenario's
+  std::string models_dir;            ///< searched first; "": only the usual places
+  bool inertia_from_shape = false;   ///< LoadOptions
+  bool force = false;                ///< LoadOptions
+  bool fill_missing_meshes = false;  ///< LoadOptions
+  std::string speed = "1.0";         ///< times real time, or "max"
   bool paused = false;
   std::string noise = "paper";  ///< preset
   int max_clients = 64;

@@ -29,6 +29,16 @@ constexpr ConfigKey TextKey(std::string_view name, std::string_view metavar,
           live};
 }
 
+template <bool C::*Member>
+constexpr ConfigKey FlagKey(std::string_view name, std::string_view sentence) {
+  return {name,
+          "",
+          sentence,
+          KeyKind::kBool,
+          [](const C& config) -> std::string { return config.*Member ? "true" : "false"; },
+          [](C& config, const std::string& text) { config.*Member = text == "true"; }};
+}
+
 constexpr std::array kKeys = {
     TextKey<&C::socket>("socket", "PATH", "where to listen; empty: $XDG_RUNTIME_DIR, /run or /tmp"),
     TextKey<&C::output_dir>("output_dir", "DIR",
@@ -41,12 +51,16 @@ constexpr std::array kKeys = {
     TextKey<&C::object>("object", "NAME|FILE.urdf",
                         "name of the object, or a .urdf file; empty: the scenario's"),
     TextKey<&C::models_dir>("models_dir", "DIR", "searched for models before the usual places"),
+    FlagKey<&C::inertia_from_shape>("inertia_from_shape",
+                                    "centre of mass and inertia of the object, and what a hand's "
+                                    "links lack, from their shapes"),
+    FlagKey<&C::force>("force", "take an object whose moment, centre of mass or density cannot be"),
+    FlagKey<&C::fill_missing_meshes>(
+        "fill_missing_meshes", "a capsule along the link where a hand's mesh file is not there"),
     ConfigKey{"speed", "X|max", "times real time, or \"max\"", KeyKind::kSpeed,
               [](const C& config) { return config.speed; },
               [](C& config, const std::string& text) { config.speed = text; }},
-    ConfigKey{"paused", "", "begin with the clock stopped", KeyKind::kBool,
-              [](const C& config) -> std::string { return config.paused ? "true" : "false"; },
-              [](C& config, const std::string& text) { config.paused = text == "true"; }},
+    FlagKey<&C::paused>("paused", "begin with the clock stopped"),
     TextKey<&C::noise>("noise", "PRESET", "preset of sensor noise: off, fine, paper, coarse, taxel",
                        true),
     ConfigKey{"max_clients", "N", "connections at the same time", KeyKind::kInteger,

@@ -52,6 +52,7 @@ class Client {
 struct ServiceConfig {
   ControlConfig control;
   std::vector<std::filesystem::path> search_path;  ///< for `reset {object}`
+  LoadOptions load;                                ///< for `reset {object}`
   std::filesystem::path output_dir;                ///< for pictures
 };
 

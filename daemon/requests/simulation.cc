@@ -182,29 +182,83 @@ Outcome Step(Service& service, const Params& params, Client&) {
   }
 }
 
-Outcome Reset(Service& service, const Params& params, Client&) {
-  service.CheckNotRestoring();
+namespace {
+
+/// Posts a reset, with another object unless that is null; what is accepted from now on is of the
+/// new run.
+std::uint64_t PostReset(Service& service, std::uint64_t seed,
+                        const std::shared_ptr<const ObjectModel>& object) {
   ControlRequest request;
   request.kind = ControlRequest::Kind::kReset;
-  request.seed = static_cast<std::uint64_t>(
-      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
-  if (params.Has("object")) {
-    try {
-      request.object = std::make_shared<const ObjectModel>(
-          LoadObject(params.String("object"), service.config().search_path));
-    } catch (const ModelError& e) {
-      throw RpcException(RpcError{ErrorCode::kIo, e.what(), "correct the model", "object", {}});
-    }
-  }
-  const std::shared_ptr<const ObjectModel> object = request.object;
-  const std::uint64_t seed = request.seed;
+  request.seed = seed;
+  request.object = object;
   const std::uint64_t barrier = service.Post(std::move(request));
   Service::Accepted& accepted = service.accepted;
   accepted.seed = seed;
   accepted.parameters = ParametersAfterReset(accepted.parameters, object.get());
   if (object) accepted.object = object;
-  return {.result = {{"seed", accepted.seed}, {"object", accepted.object->name}},
-          .barrier = barrier};
+  return barrier;
+}
+
+Json ResetAnswer(const Service& service) {
+  return {{"seed", service.accepted.seed}, {"object", service.accepted.object->name}};
+}
+
+/// Answers when the control thread has taken request `barrier`.
+void AnswerAfter(Service& service, std::uint64_t barrier, const Json& answer, const Done& done) {
+  constexpr double kLook_s = 0.002;
+  if (service.control().acknowledged() >= barrier) return done(answer, nullptr);
+  service.host().After(
+      kLook_s, [&service, barrier, answer, done] { AnswerAfter(service, barrier, answer, done); });
+}
+
+/// The file is read by the worker thread: a mesh may take seconds.
+void LoadAndReset(Service& service, std::uint64_t seed, const std::string& name, const Done& done) {
+  struct Loaded {
+    std::shared_ptr<const ObjectModel> object;
+    RpcError error;
+  };
+  const auto loaded = std::make_shared<Loaded>();
+  const auto load = [loaded, name, config = service.config()] {
+    try {
+      loaded->object =
+          std::make_shared<const ObjectModel>(LoadObject(name, config.search_path, config.load));
+    } catch (const std::exception& e) {
+      loaded->error = {ErrorCode::kIo, e.what(), "correct the model", "object", {}};
+    }
+  };
+  const auto reset = [&service, loaded, seed, done] {
+    if (!loaded->object) return done({}, &loaded->error);
+    try {
+      service.CheckNotRestoring();
+      const std::uint64_t barrier = PostReset(service, seed, loaded->object);
+      AnswerAfter(service, barrier, ResetAnswer(service), done);
+    } catch (const RpcException& e) {
+      done({}, &e.error());
+    }
+  };
+  if (service.host().Background(load, reset)) return;
+  const RpcError error{
+      ErrorCode::kBusy, "too many files are being read", "try again later", {}, {}};
+  done({}, &error);
+}
+
+}  // namespace
+
+Outcome Reset(Service& service, const Params& params, Client&) {
+  service.CheckNotRestoring();
+  const auto seed = static_cast<std::uint64_t>(
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+  Outcome outcome;
+  if (params.Has("object")) {
+    outcome.begin = [&service, seed, name = params.String("object")](Done done) {
+      LoadAndReset(service, seed, name, done);
+    };
+    return outcome;
+  }
+  outcome.barrier = PostReset(service, seed, nullptr);
+  outcome.result = ResetAnswer(service);
+  return outcome;
 }
 
 Outcome Push(Service& service, const Params& params, Client&) {
