@@ -181,8 +181,8 @@ class World {
   StageTimes stage_times() const;
 
   WorldMemory Memory() const;
-  /// Goes on from there. False, and nothing changes, where it is of another hand or stepper, or this
-  /// world has faulted.
+  /// Goes on from there. False, and nothing changes, where it is of another hand or stepper, or
+  /// this world has faulted.
   bool Remember(const WorldMemory& memory);
   template <typename V>
   void Fields(V& v) {
