@@ -23,6 +23,8 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
       std::filesystem::absolute(config.output_dir.empty() ? DefaultOutputDir() : config.output_dir);
   service.control.speed = ParseSpeed(config.speed);
   service.control.paused = config.paused;
+  service.control.clock =
+      config.clock == "lockstep" ? ClockMode::kLockstep : ClockMode::kContinuous;
 
   SessionConfig& session = service.control.session;
   service.load.inertia_from_shape = config.inertia_from_shape;

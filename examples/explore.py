@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lets every finger improve the grasp in turn and prints what that brought. Standard library only.
 
-    regrasp up && python3 explore.py [SOCKET]
+    regrasp up --speed max && python3 explore.py [SOCKET]
 """
 
 import json

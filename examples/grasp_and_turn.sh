@@ -1,6 +1,6 @@
 #!/bin/sh
 # Grasps the object and turns it by 90 degrees, with nothing but a shell and nc (netcat-openbsd).
-#   regrasp up && sh grasp_and_turn.sh [SOCKET]
+#   regrasp up --speed max && sh grasp_and_turn.sh [SOCKET]
 set -eu
 socket=${1:-${REGRASP_SOCKET:-}}
 if [ -z "$socket" ]; then # the first that is there of the places where `regrasp up` puts it
@@ -15,14 +15,19 @@ ask() {
   printf '{"jsonrpc":"2.0","id":1,"method":"%s","params":%s}\n' "$1" "${2:-{\}}" | nc -U -N "$socket"
 }
 
-# wait_for ANSWER: the record of the job that ANSWER names, once it has ended.
+# wait_for ANSWER: the record of the job that ANSWER names, once it has ended; it must have done what was asked.
 wait_for() {
   job=$(printf '%s' "$1" | sed -n 's/.*"job":\([0-9]*\).*/\1/p')
   if [ -z "$job" ]; then
     echo "refused: $1" >&2
     exit 5
   fi
-  ask job.wait "{\"id\":$job}"
+  record=$(ask job.wait "{\"id\":$job}")
+  printf '%s\n' "$record"
+  case $record in
+    *'"state":"done"'*) ;;
+    *) exit 1 ;;
+  esac
 }
 
 wait_for "$(ask grasp)"

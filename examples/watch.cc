@@ -1,6 +1,6 @@
 // Subscribes to what the controller senses and prints the force of every sample, until COUNT of
 // them have come. C++20 and POSIX, no library.
-//   regrasp up && g++ -std=c++20 watch.cc -o watch && ./watch [SOCKET [COUNT]]
+//   regrasp up --speed max && g++ -std=c++20 watch.cc -o watch && ./watch [SOCKET [COUNT]]
 
 #include <sys/socket.h>
 #include <sys/un.h>

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,9 +38,22 @@ std::string Tail(const std::string& path, std::size_t count) {
   return text;
 }
 
+/// This program's environment, without what `surroundings` keeps from the daemon.
+std::vector<char*> Environment(Surroundings surroundings) {
+  std::vector<char*> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    const bool ours = text.starts_with("REGRASP_") || text.starts_with("LISTEN_") ||
+                      text.starts_with("NOTIFY_SOCKET=") || text.starts_with("WATCHDOG_");
+    if (surroundings == Surroundings::kOfUser || !ours) variables.push_back(*variable);
+  }
+  variables.push_back(nullptr);
+  return variables;
+}
+
 /// The child's side: own session, output to the log, then the daemon. Never returns. Only
 /// async-signal-safe calls: the program may have threads.
-[[noreturn]] void Become(char* const* argv, int log_fd) {
+[[noreturn]] void Become(char* const* argv, char* const* variables, int log_fd) {
   ::setsid();
   const int null_fd = ::open("/dev/null", O_RDONLY);
   ::dup2(null_fd, STDIN_FILENO);
@@ -50,7 +64,7 @@ std::string Tail(const std::string& path, std::size_t count) {
   sigprocmask(SIG_SETMASK, &none, nullptr);
   ::signal(SIGINT, SIG_DFL);
   ::signal(SIGTERM, SIG_DFL);
-  ::execv(argv[0], argv);
+  ::execve(argv[0], argv, variables);
   ::_exit(127);
 }
 
@@ -73,7 +87,7 @@ std::string FindDaemon() {
 }
 
 StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
-                          double timeout_s) {
+                          double timeout_s, Surroundings surroundings) {
   const std::string daemon = FindDaemon();
   const fs::path directory = fs::absolute(socket).parent_path();
   std::error_code error;
@@ -94,12 +108,14 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
                    "regrasp -s PATH up");
   }
   std::vector<std::string> words = {daemon, "--socket", socket};
+  if (surroundings == Surroundings::kNothing) words.insert(words.end(), {"--config", "/dev/null"});
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
+  const std::vector<char*> variables = Environment(surroundings);
   started.pid = ::fork();
-  if (started.pid == 0) Become(argv.data(), log_fd);
+  if (started.pid == 0) Become(argv.data(), variables.data(), log_fd);
   ::close(log_fd);
   if (started.pid < 0)
     throw CliError(kIo, fmt::format("cannot start {}: {}", daemon, std::strerror(errno)));
@@ -134,6 +150,25 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
   return started;
 }
 
+bool WaitForLock(const std::string& socket, double timeout_s) {
+  const auto deadline = Deadline(timeout_s);
+  const int lock = ::open((socket + ".lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (lock < 0) return true;  // none there, or not ours: starting tells
+  bool free = false;
+  try {
+    while (true) {
+      free = ::flock(lock, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+      if (free || Clock::now() > deadline) break;
+      WaitFor(-1, 0, Deadline(0.01));
+    }
+  } catch (...) {
+    ::close(lock);
+    throw;
+  }
+  ::close(lock);
+  return free;
+}
+
 bool StopDaemon(const std::string& socket, double timeout_s) {
   Client client(socket, timeout_s);
   const auto deadline = Deadline(timeout_s);
@@ -153,6 +188,11 @@ bool StopDaemon(const std::string& socket, double timeout_s) {
     }
     WaitFor(-1, 0, Deadline(0.01));
   }
+  const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
+  if (!WaitForLock(socket, std::max(left, 0.01)))
+    throw CliError(kTimeout,
+                   fmt::format("the daemon on {} is still ending after {:g} s", socket, timeout_s),
+                   "regrasp --timeout 60 down");
   return false;
 }
 

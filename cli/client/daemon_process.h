@@ -10,6 +10,12 @@ namespace regrasp::cli {
 /// The `regraspd` beside this program, else the one in $PATH. Throws CliError(kNotFound).
 std::string FindDaemon();
 
+/// What a daemon may learn from where it is started.
+enum class Surroundings {
+  kOfUser,   ///< configuration file and environment, as the user has them
+  kNothing,  ///< neither: no configuration file, no $REGRASP_..., no service manager
+};
+
 struct StartedDaemon {
   int pid = 0;
   std::string socket, log;
@@ -20,10 +26,15 @@ struct StartedDaemon {
 /// missing. Throws CliError: with the end of the log when the daemon ends at once, kTimeout when it
 /// is not ready after `timeout_s`.
 StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
-                          double timeout_s);
+                          double timeout_s, Surroundings surroundings = Surroundings::kOfUser);
 
-/// Asks the daemon at `socket` to stop and waits until it is gone. Returns whether a service
-/// manager keeps the socket and will start another at the next connection. Throws CliError.
+/// Waits until no daemon holds the lock of `socket`: one that no longer listens may still be on its
+/// way out. Returns false when one still does after `timeout_s`.
+bool WaitForLock(const std::string& socket, double timeout_s);
+
+/// Asks the daemon at `socket` to stop and waits until it is gone and another may start. Returns
+/// whether a service manager keeps the socket and will start another at the next connection. Throws
+/// CliError.
 bool StopDaemon(const std::string& socket, double timeout_s);
 
 }  // namespace regrasp::cli

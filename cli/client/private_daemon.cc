@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 
 #include "cli/client/errors.h"
@@ -13,8 +14,11 @@ PrivateDaemon::PrivateDaemon(const std::vector<std::string>& arguments) {
   char name[] = "/tmp/regrasp-private-XXXXXX";
   if (::mkdtemp(name) == nullptr) throw CliError(kIo, "cannot make a directory in /tmp", "df /tmp");
   directory_ = name;
+  std::vector<std::string> words = arguments;
+  if (std::find(words.begin(), words.end(), "--output-dir") == words.end())
+    words.insert(words.end(), {"--output-dir", (directory_ / "output").string()});
   try {
-    started_ = StartDaemon(directory_ / "regrasp.sock", arguments, 60);
+    started_ = StartDaemon(directory_ / "regrasp.sock", words, 60, Surroundings::kNothing);
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove_all(directory_, ignored);

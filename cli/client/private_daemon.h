@@ -9,10 +9,13 @@
 namespace regrasp::cli {
 
 /// A daemon of this program's own, its socket in a directory of its own under /tmp; stopped, and
-/// the directory removed, when it goes out of scope, however that happens.
+/// the directory removed, when it goes out of scope, however that happens. Its arguments alone
+/// decide what it does: it sees neither the user's configuration nor $REGRASP_..., and what it
+/// writes goes with it unless `--output-dir` is among them.
 class PrivateDaemon {
  public:
-  /// Starts `regraspd --socket … arguments…`. Throws CliError as StartDaemon() does.
+  /// Starts `regraspd --socket … --config /dev/null arguments…`. Throws CliError as StartDaemon()
+  /// does.
   explicit PrivateDaemon(const std::vector<std::string>& arguments);
   ~PrivateDaemon();
   PrivateDaemon(const PrivateDaemon&) = delete;

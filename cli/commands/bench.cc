@@ -42,7 +42,7 @@ ExitCode Bench(Context& context, const Invocation& invocation) {
     throw CliError(kFailed, finished.err.substr(0, finished.err.find('\n')), "regrasp doctor");
   Json answer = Json::parse(finished.out);
   for (const char* speed : {"1", "max"}) {
-    const PrivateDaemon daemon({"--config", "/dev/null", "--speed", speed});
+    const PrivateDaemon daemon({"--speed", speed});
     answer["status_round_trip"][std::string("speed_") + speed] =
         RoundTrips(daemon.socket(), seconds);
   }

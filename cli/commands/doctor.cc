@@ -161,8 +161,8 @@ class SelfTest {
 
 Check CheckPhysics() {
   try {
-    const PrivateDaemon daemon({"--paused", "--speed", "max", "--seed", "1", "--noise", "paper",
-                                "--hand", "shadow", "--config", "/dev/null"});
+    const PrivateDaemon daemon(
+        {"--paused", "--speed", "max", "--seed", "1", "--noise", "paper", "--hand", "shadow"});
     return SelfTest(daemon.socket()).Run();
   } catch (const CliError& error) {
     return {"physics", error.what(), error.hint, false};

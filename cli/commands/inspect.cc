@@ -42,8 +42,14 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const std::string state = Plain(At(s, "state"));
     line("state", out.Paint(state, StateStyle(state)) +
                       (At(s, "paused") == true ? out.Paint(" (paused)", Style::kWarn) : ""));
-    line("time", fmt::format("{} s (tick {}), {} x real time", Fixed(At(s, "time_s"), 3),
-                             Plain(At(s, "tick")), Fixed(At(s, "real_time_factor"), 2)));
+    const bool lockstep = At(s, "clock") == "lockstep";
+    std::string time =
+        fmt::format("{} s (tick {})", Fixed(At(s, "time_s"), 3), Plain(At(s, "tick")));
+    // Unknown in the first moments of a daemon, and meaningless where time stands still.
+    if (const Json& factor = At(s, "real_time_factor"); factor.is_number() && factor != 0.0)
+      time += fmt::format(", {} x real time", Fixed(factor, 2));
+    if (lockstep) time += ", lockstep: advances while a job runs";
+    line("time", time);
     line("run", fmt::format("hand {}, object {}, seed {}", Plain(At(s, "hand")),
                             Plain(At(s, "object")), Plain(At(s, "seed"))));
     const Json& noise = At(s, "noise");

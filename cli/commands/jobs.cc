@@ -185,10 +185,24 @@ Json WaitForJob(Context& context, std::int64_t id) {
   }
 }
 
+void CheckNotPaused(Context& context, const std::string& what, const std::string& next) {
+  const Json status = context.client().Call("status", Json::object());
+  if (At(status, "paused") != true) return;
+  throw CliError(kRefused, fmt::format("the simulation is paused: {} would wait for ever", what),
+                 next);
+}
+
 ExitCode StartJob(Context& context, const Invocation& invocation) {
+  const bool wait = invocation.Has("wait");
+  const std::string& words = invocation.command->words;
+  if (wait && words != "step")
+    CheckNotPaused(context, words + " --wait",
+                   fmt::format("regrasp resume, or: regrasp {} ... without --wait, then regrasp "
+                               "step --until-job-ends --wait",
+                               words));
   const Json answer = context.Call(invocation);
   const std::int64_t id = answer.at("job");
-  if (!invocation.Has("wait")) {
+  if (!wait) {
     context.Print(answer, [&] {
       context.out().Line(fmt::format("job {}: {} started    (regrasp job wait {})", id,
                                      invocation.command->words, id));

@@ -17,6 +17,10 @@ ExitCode JobExit(const Json& record);
 /// The record, for people: one sentence, then what it measured.
 void PrintJob(Output& out, const Json& record);
 
+/// Throws CliError(kRefused), with `next` to try, when the simulation is paused: `what` would wait
+/// until somebody else lets it go on.
+void CheckNotPaused(Context& context, const std::string& what, const std::string& next);
+
 /// Sends the method of `invocation`, prints the job it started or, with --wait, its record.
 ExitCode StartJob(Context& context, const Invocation& invocation);
 

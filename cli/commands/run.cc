@@ -7,6 +7,7 @@
 #include "cli/client/config_file.h"
 #include "cli/client/context.h"
 #include "cli/client/daemon_process.h"
+#include "cli/client/program.h"
 #include "cli/demo/demo.h"
 #include "core/protocol/socket_path.h"
 
@@ -34,6 +35,8 @@ std::vector<Arg> DaemonArgs() {
   };
   return {
       arg("speed", "X", "times real time, or max", "1"),
+      arg("clock", "MODE", "continuous, or lockstep: time advances only while a job runs",
+          "lockstep with --speed max, else continuous"),
       arg("seed", "N", "seed of the run", "1"),
       arg("hand", "NAME|FILE", "hand model"),
       arg("object", "NAME|FILE", "object model"),
@@ -62,34 +65,100 @@ std::vector<std::string> DaemonWords(const Invocation& invocation) {
   return words;
 }
 
+/// The standard output of `regraspd words... action`. Throws CliError as it refuses them.
+std::string AskProgram(std::vector<std::string> words, const char* action) {
+  words.insert(words.begin(), FindDaemon());
+  words.emplace_back(action);
+  const Finished finished = RunProgram(words);
+  if (finished.code == 0) return finished.out;
+  std::string cause = finished.err.substr(0, finished.err.find('\n'));
+  if (cause.starts_with("regraspd: ")) cause.erase(0, std::string("regraspd: ").size());
+  const bool known = finished.code == 2 || finished.code == 6 || finished.code == 77;
+  throw CliError(known ? static_cast<ExitCode>(finished.code) : kFailed, cause, "regraspd --help");
+}
+
+/// What the options of this call, file and environment make of every key: {KEY: {value, origin}}.
+Json Resolve(const std::vector<std::string>& words) {
+  Json keys;
+  const Json config = Json::parse(AskProgram(words, "--print-config"));
+  for (const Json& key : config.at("keys")) keys[Plain(key.at("name"))] = key;
+  return keys;
+}
+
+/// Where the options of this call differ from what runs: "seed is 1, not 4; ...".
+std::string Differences(const Json& wanted, const Invocation& invocation, const Json& status) {
+  std::string text;
+  for (const auto& [flag, key] :
+       {std::pair{"seed", "seed"}, std::pair{"hand", "hand"}, std::pair{"object", "object"},
+        std::pair{"noise", "noise"}, std::pair{"speed", "speed"}, std::pair{"clock", "clock"},
+        std::pair{"paused", "paused"}, std::pair{"output-dir", "output_dir"}}) {
+    if (!invocation.Has(flag)) continue;
+    Json is = At(status, key), want = wanted.at(key).at("value");
+    if (is.is_object()) is = At(is, "preset");
+    if (want.is_string() && want.get<std::string>().ends_with(".urdf"))
+      want = std::filesystem::path(want.get<std::string>()).stem().string();
+    if (is != want)
+      text +=
+          fmt::format("{}{} is {}, not {}", text.empty() ? "" : "; ", flag, Plain(is), Plain(want));
+  }
+  return text;
+}
+
+/// Whether a daemon answers on `socket`; one that is about to begin or to end is waited for.
+bool Running(const std::string& socket, double timeout_s) {
+  constexpr double kSlice_s = 0.05;
+  for (const auto deadline = Deadline(timeout_s);;) {
+    if (Listening(socket)) return true;
+    if (WaitForLock(socket, kSlice_s)) return false;
+    if (Clock::now() > deadline)
+      throw CliError(
+          kTimeout,
+          fmt::format("a daemon holds {}.lock but does not answer after {:g} s", socket, timeout_s),
+          "regrasp doctor");
+  }
+}
+
+/// Throws CliError(kRefused) unless what runs is what the options ask for.
+void CheckSame(const Invocation& invocation, const std::vector<std::string>& words,
+               const Json& wanted, const std::string& socket, const Json& status) {
+  if (words.empty()) return;
+  AskProgram(words, "--check-config");
+  const std::string differences = Differences(wanted, invocation, status);
+  if (!differences.empty())
+    throw CliError(kRefused,
+                   fmt::format("a daemon is already running on {}: {}", socket, differences),
+                   "regrasp down, then regrasp up again");
+}
+
 ExitCode Up(Context& context, const Invocation& invocation) {
   const Interruptible interruptible;
   const std::string socket =
       ResolveSocketPath(context.options().socket, ConfiguredSocket(), SocketUse::kListen).path;
   const auto words = DaemonWords(invocation);
-  const bool running = Listening(socket);
+  const Json wanted = Resolve(words);
+  const bool running = Running(socket, context.timeout_s());
   Json answer = {{"started", !running}, {"socket", socket}};
   if (!running) {
-    const StartedDaemon started = StartDaemon(socket, words, context.timeout_s());
+    auto arguments = words;
+    if (At(wanted.at("speed"), "value") == "max" && At(wanted.at("clock"), "origin") == "built in")
+      arguments.insert(arguments.end(), {"--clock", "lockstep"});
+    const StartedDaemon started = StartDaemon(socket, arguments, context.timeout_s());
     answer["pid"] = started.pid;
     answer["log"] = started.log;
   }
   Client client(socket, context.timeout_s());
   const Json status = client.Call("status", Json::object());
-  for (const char* key : {"version", "hand", "object"}) answer[key] = At(status, key);
+  if (running) CheckSame(invocation, words, wanted, socket, status);
+  for (const char* key : {"version", "hand", "object", "clock"}) answer[key] = At(status, key);
   context.Print(answer, [&] {
     Output& out = context.out();
     out.Line(fmt::format("regraspd {} {} on {}", Plain(answer["version"]),
                          running ? "is already running" : "is ready", socket));
-    out.Line(fmt::format("  hand {}, object {}", Plain(answer["hand"]), Plain(answer["object"])));
+    out.Line(fmt::format("  hand {}, object {}, {} clock", Plain(answer["hand"]),
+                         Plain(answer["object"]), Plain(answer["clock"])));
     if (!running)
       out.Line(fmt::format("  pid {}, log {}", Plain(answer["pid"]), Plain(answer["log"])));
   });
-  if (running && !words.empty()) {
-    fmt::print(stderr,
-               "regrasp: it was running already: the options of this call change nothing\n  try: "
-               "regrasp down, then regrasp up again\n");
-  }
   return kOk;
 }
 

@@ -199,6 +199,17 @@ EntryRead ParseEntry(std::string_view text, const SessionConfig& config) {
 
 std::string HandText(const HandModel& hand) { return fields::ToJson(hand).dump(); }
 
+ModelHashes HashModels(const LoadedScenario& model) {
+  const auto hash = [](const Json& json) {
+    std::uint64_t value = 0xcbf29ce484222325ULL;  // FNV-1a
+    for (const char byte : json.dump())
+      value = (value ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
+    return value;
+  };
+  return {hash(fields::ToJson(model.scenario)), hash(fields::ToJson(model.hand)),
+          hash(fields::ToJson(model.object))};
+}
+
 std::string CheckpointText(const Checkpoint& checkpoint) {
   const SessionConfig& config = checkpoint.journal.config;
   Save head;

@@ -35,6 +35,13 @@ EntryRead ParseEntry(std::string_view text, const SessionConfig& config);
 /// The model of the hand as text: two hands are the same when these are.
 std::string HandText(const HandModel& hand);
 
+/// A model as it was read from its files: 64 bits over everything that the simulation and the
+/// controller take from them, so that the same files elsewhere, or written otherwise, are the same.
+struct ModelHashes {
+  std::uint64_t scenario = 0, hand = 0, object = 0;
+};
+ModelHashes HashModels(const LoadedScenario& model);
+
 /// A checkpoint as JSON lines: what it is, the configuration, the commands, the saved state.
 std::string CheckpointText(const Checkpoint& checkpoint);
 /// Throws JournalError. A saved state that does not belong to the lines before it (the file was

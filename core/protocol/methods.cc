@@ -296,6 +296,10 @@ constexpr std::array kStep = {
               .min = 1,
               .max = 1e9,
               .default_text = "1"},
+    ParamSpec{.name = "until_job_ends",
+              .type = kBool,
+              .sentence = "no further than to the end of the job that is running or waits to begin",
+              .default_text = "false"},
 };
 constexpr std::array kSubscribe = {
     ParamSpec{.name = "topic",
@@ -350,6 +354,11 @@ constexpr std::array kMethods = {
     MethodSpec{"grasp", "grasp", "close the hand on the object and hold it", kNone, true, "job"},
     MethodSpec{"hello", "call hello", "agree on a protocol version (optional)", kHello, false,
                "protocol, version, server"},
+    MethodSpec{"identity", "call identity",
+               "what decides the results, besides seed and commands: equal answers, equal bits",
+               kNone, false,
+               "build; stepper; models: {scenario, hand, object}, each {name, hash of the model as "
+               "it was read}; parameters: {NAME: value} of those that differ from their defaults"},
     MethodSpec{"job.cancel", "job cancel", "end a job", kJobId, false, "the record of the job"},
     MethodSpec{"job.get", "job show", "the record of a job", kJobId, false,
                "the record of the job"},
@@ -358,7 +367,7 @@ constexpr std::array kMethods = {
     MethodSpec{"job.wait", "job wait", "wait until a job has ended; the only deferred answer",
                kJobWait, false, "the record of the job"},
     MethodSpec{
-        "joints", "joints", "joint angles, rates and torques", kNone, false,
+        "joints", "joints", "joint angles, torques and limits", kNone, false,
         "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
     MethodSpec{"move", "move", "move the object a little with all fingers, without a regrasp",
                kMove, true, "job"},
@@ -394,17 +403,20 @@ constexpr std::array kMethods = {
     MethodSpec{"resume", "resume", "let the clock of the simulation run again", kNone, false,
                "paused, tick"},
     MethodSpec{"rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
-               "job"},
+               "job; its record when it has ended: angle_rad (signed, unwrapped, true), turns, "
+               "gait_cycles, regrasps, dropped, max_position_error_m, max_tilt_rad, sim_time_s"},
     MethodSpec{
         "shutdown", "down", "stop the daemon cleanly", kNone, false,
         "stopping, activated (true: the service manager starts another at the next connection)"},
     MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
-               "version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, "
+               "version, protocol, state, paused, clock (continuous, lockstep), "
+               "advancing (time goes on now), tick, time_s, state_hash, real_time_factor, "
                "speed, tick_p99_s, seed, hand, object, job, gait: {active, phase, finger, "
                "target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop: "
                "tick, cause, record, "
                "picture; or null), noise, clients, ..."},
-    MethodSpec{"step", "step", "advance a paused simulation", kStep, true, "job"},
+    MethodSpec{"step", "step", "advance a simulation that is paused, or stands still in lockstep",
+               kStep, true, "job"},
     MethodSpec{"stop", "stop", "end the current job and keep holding", kNone, false,
                "job (the one that ends), or null"},
     MethodSpec{"subscribe", "watch", "receive a topic as notifications", kSubscribe, false, "sub"},

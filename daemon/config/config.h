@@ -35,6 +35,7 @@ struct DaemonConfig {
   bool force = false;                ///< LoadOptions
   bool fill_missing_meshes = false;  ///< LoadOptions
   std::string speed = "1.0";         ///< times real time, or "max"
+  std::string clock = "continuous";  ///< continuous or lockstep
   bool paused = false;
   std::string noise = "paper";  ///< preset
   int max_clients = 64;

@@ -60,6 +60,8 @@ constexpr std::array kKeys = {
     ConfigKey{"speed", "X|max", "times real time, or \"max\"", KeyKind::kSpeed,
               [](const C& config) { return config.speed; },
               [](C& config, const std::string& text) { config.speed = text; }},
+    TextKey<&C::clock>("clock", "MODE",
+                       "continuous; lockstep: time advances only while a job runs or a step asks"),
     FlagKey<&C::paused>("paused", "begin with the clock stopped"),
     TextKey<&C::noise>("noise", "PRESET", "preset of sensor noise: off, fine, paper, coarse, taxel",
                        true),
@@ -131,6 +133,7 @@ void CheckConfig(const DaemonConfig& config, const std::string& where) {
   CheckWord(where, "log_level", config.log_level,
             {"trace", "debug", "info", "warn", "error", "off"});
   CheckWord(where, "log_format", config.log_format, {"text", "json"});
+  CheckWord(where, "clock", config.clock, {"continuous", "lockstep"});
   CheckWord(where, "stepper", config.stepper, {"fast", "exact"});
   if (config.hand.empty()) throw ConfigError(where + "hand is empty");
   if (config.max_clients < 1 || config.max_clients > 1000)

@@ -72,22 +72,11 @@ void ControlLoop::Run() {
       continue;
     }
     const bool faulted = session_->state() == SessionState::kFaulted;
-    if (faulted) {
-      // Nothing moves any more: commands are answered (refused), the clock stands.
-      if (steps_left_ > 0) FinishStep(JobState::kFailed, "the simulation has faulted");
-      ApplyWaiting();
-    }
-    const bool ticking = !faulted && (!paused_ || steps_left_ > 0);
-    if (!ticking) {
-      if (!faulted) pulse_.fetch_add(1, std::memory_order_relaxed);
-      CollectOutput();
-      if (publish_due_) Publish();
-      Acknowledge();
-      // What the rings could not take is offered again soon; otherwise sleep until asked.
-      const bool retry = publish_due_ || !unsent_jobs_.empty() || !unsent_news_.empty();
-      using namespace std::chrono_literals;
-      input_.WaitUntil(retry ? std::optional(Pacing::Clock::now() + 1ms) : std::nullopt);
-      pacing_.Restart(Pacing::Clock::now());
+    // Nothing moves any more: commands are answered (refused), the clock stands.
+    if (faulted && steps_left_ > 0) FinishStep(JobState::kFailed, "the simulation has faulted");
+    if (faulted || (config_.clock == ClockMode::kLockstep && !paused_)) ApplyWaiting();
+    if (!Advancing()) {
+      StandStill();
       continue;
     }
     if (!paused_) {
@@ -103,6 +92,26 @@ void ControlLoop::Run() {
     TickOnce();
     Acknowledge();
   }
+}
+
+/// Whether the next tick comes by itself.
+bool ControlLoop::Advancing() const {
+  if (session_->state() == SessionState::kFaulted) return false;
+  if (steps_left_ > 0) return true;
+  return !paused_ && (config_.clock == ClockMode::kContinuous || session_->job_running());
+}
+
+/// Tells what there is to tell and sleeps until asked.
+void ControlLoop::StandStill() {
+  if (session_->state() != SessionState::kFaulted) pulse_.fetch_add(1, std::memory_order_relaxed);
+  CollectOutput();
+  if (publish_due_) Publish();
+  Acknowledge();
+  // What the rings could not take is offered again soon.
+  const bool retry = publish_due_ || !unsent_jobs_.empty() || !unsent_news_.empty();
+  using namespace std::chrono_literals;
+  input_.WaitUntil(retry ? std::optional(Pacing::Clock::now() + 1ms) : std::nullopt);
+  pacing_.Restart(Pacing::Clock::now());
 }
 
 void ControlLoop::TakeRequests() {
@@ -133,7 +142,9 @@ void ControlLoop::TakeRequests() {
         step_.state = JobState::kRunning;
         step_.start_tick = session_->tick();
         steps_left_ = steps_total_ = taken.request.ticks;
-        if (!paused_) FinishStep(JobState::kFailed, "the simulation is not paused");
+        step_until_job_ends_ = taken.request.until_job_ends;
+        if (!paused_ && config_.clock == ClockMode::kContinuous)
+          FinishStep(JobState::kFailed, "the simulation is not paused");
         break;
       case ControlRequest::Kind::kCancelStep:
         if (step_.id != taken.request.job) break;
@@ -355,7 +366,8 @@ void ControlLoop::TickOnce() {
   if (steps_left_ > 0) {
     --steps_left_;
     step_.progress = 1.0 - static_cast<double>(steps_left_) / static_cast<double>(steps_total_);
-    if (steps_left_ == 0) FinishStep(JobState::kDone, "");
+    if (steps_left_ == 0 || (step_until_job_ends_ && !session_->job_running()))
+      FinishStep(JobState::kDone, "");
   }
   if (session_->tick() % kTicksPerFrame == 0) publish_due_ = true;
   CollectOutput();
@@ -411,6 +423,7 @@ void ControlLoop::CollectOutput() {
 void ControlLoop::Publish() {
   session_->Snapshot(&scratch_.frame, true);
   scratch_.paused = paused_;
+  scratch_.advancing = Advancing();
   scratch_.step = step_;
   scratch_.run = run_;
   scratch_.commands = applied_;

@@ -32,9 +32,10 @@ struct ControlRequest {
     kReset,  ///< a new session
   };
   Kind kind = Kind::kCommand;
-  Command command = {};    ///< kCommand; kRestore: the branch command (job, reseed, seed)
-  std::int64_t job = 0;    ///< kStep, kCancelStep, kRestore
-  std::int64_t ticks = 0;  ///< kStep
+  Command command = {};         ///< kCommand; kRestore: the branch command (job, reseed, seed)
+  std::int64_t job = 0;         ///< kStep, kCancelStep, kRestore
+  std::int64_t ticks = 0;       ///< kStep
+  bool until_job_ends = false;  ///< kStep: no further than that
   std::shared_ptr<const Checkpoint> checkpoint = {};  ///< kRestore
   /// kRestore: already in the checkpoint's state; null: its commands are executed again.
   std::unique_ptr<Session> session = {};
@@ -65,10 +66,17 @@ struct JournalNews {
   std::shared_ptr<const RunStart> start = {};     ///< kBegin
 };
 
+/// When simulated time advances by itself.
+enum class ClockMode : std::uint8_t {
+  kContinuous,  ///< always, unless paused
+  kLockstep,    ///< while a job runs; what happens then depends on the commands alone
+};
+
 /// One published tick.
 struct Published {
   Frame frame;
   bool paused = false;
+  bool advancing = false;    ///< simulated time goes on after this tick
   JobRecord step;            ///< the running or last step or restore; id 0 = none yet
   std::uint64_t run = 0;     ///< counts resets
   std::size_t commands = 0;  ///< of the run, applied before this state
@@ -82,7 +90,8 @@ struct PublishedEvent {
 
 struct ControlConfig {
   SessionConfig session;
-  double speed = 1.0;   ///< times real time, or kMaxSpeed
+  double speed = 1.0;  ///< times real time, or kMaxSpeed
+  ClockMode clock = ClockMode::kContinuous;
   bool paused = false;  ///< begin paused
 };
 
@@ -102,7 +111,8 @@ class ControlLoop {
   // The I/O thread's side.
 
   /// Queues a request. Returns its number, or 0 when the queue is full. Commands take effect before
-  /// the next tick, in order; a reset takes effect at once, even while paused.
+  /// the next tick, in order, and where time stands still in lockstep at once: at the tick where
+  /// the last job ended. A reset takes effect at once, even while paused.
   std::uint64_t Post(ControlRequest request);
   /// Requests up to this number have been taken: applied, or (while paused) waiting for the next
   /// tick. A frame that shows their effect has been published before.
@@ -136,6 +146,8 @@ class ControlLoop {
   };
 
   void Run();
+  bool Advancing() const;
+  void StandStill();
   void TakeRequests();
   void ApplyWaiting();
   void Reset(const ControlRequest& request);
@@ -161,6 +173,7 @@ class ControlLoop {
   Pacing pacing_;
   bool paused_ = false;
   std::int64_t steps_left_ = 0, steps_total_ = 0;
+  bool step_until_job_ends_ = false;
   JobRecord step_;
   ControlRequest restoring_;        ///< while replay_ is there
   std::unique_ptr<Replay> replay_;  ///< on its way to the checkpoint; the session stands still

@@ -199,7 +199,7 @@ systemctl enable --now regraspd.socket
 
 listens on _/run/regrasp/regrasp.sock_, for root, and starts the daemon at the first command. It
 reports readiness, state (*systemctl status regraspd*) and reloads, and takes a socket that is handed
-over. The watchdog is fed only while the simulation advances, or while it was paused on purpose: a
+over. The watchdog is fed only while the simulation advances, or while it stands still on purpose: a
 control loop that is stuck or has faulted ends in a restart. The service has no network, no devices,
 no capabilities and writes only _/var/lib/regrasp_. Its configuration is
 _/etc/regrasp/regraspd.toml_.

@@ -36,11 +36,14 @@ for line in s.makefile():
   are not finite are errors, and nothing has changed.
 - **Answers** come in the order of the requests of a connection. The answer to a command is sent when the command
   has been taken up, within one tick: what is asked next sees its effect. While the simulation is paused,
-  commands wait for the next tick stepped; `reset` acts at once.
+  commands wait for the next tick stepped; `reset` acts at once. With a lockstep clock (`--clock lockstep`, the
+  default of `regrasp up --speed max`) time advances only while a job runs or a `step` asks: a command given
+  between jobs takes effect at once, at the tick where the last one ended, so that the same requests give the same
+  bits. One given while a job runs takes effect at whatever tick it meets.
 - **Jobs.** Long work answers `{{"job": n}}` at once. `job.wait` is the only answer that others may overtake.
 - **Subscriptions.** `subscribe` answers `{{"sub": n}}`; then come notifications `event` with `sub`, `topic`, `seq` (from 1),
   `dropped` (samples left out so far), `t_s` (simulated time) and the fields of the topic. Samples are sent when there
-  is something new, at most `rate_hz` times per second. Events are queued, samples are not.
+  is something new, at most `rate_hz` times per second, and while time stands still the same again at that rate. Events are queued, samples are not.
 - **Slow clients.** A client with more than 1 MiB of unread answers, or none of them read for {stall} s, is
   disconnected.
 - **Files.** Names only; they are written to `output_dir` (see `status`).

@@ -21,6 +21,7 @@ constexpr std::array kHandlers = {
     Entry{"explore", handlers::Explore},
     Entry{"grasp", handlers::Grasp},
     Entry{"hello", handlers::Hello},
+    Entry{"identity", handlers::Identity},
     Entry{"job.cancel", handlers::JobCancel},
     Entry{"job.get", handlers::JobGet},
     Entry{"job.list", handlers::JobList},

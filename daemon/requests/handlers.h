@@ -32,6 +32,7 @@ Outcome Contacts(Service&, const Params&, Client&);
 Outcome Describe(Service&, const Params&, Client&);
 Outcome Events(Service&, const Params&, Client&);
 Outcome Hello(Service&, const Params&, Client&);
+Outcome Identity(Service&, const Params&, Client&);
 Outcome Joints(Service&, const Params&, Client&);
 Outcome Quality(Service&, const Params&, Client&);
 Outcome Shutdown(Service&, const Params&, Client&);

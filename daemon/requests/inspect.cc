@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/journal/journal.h"
+#include "core/journal/journal_text.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
 
@@ -23,6 +24,8 @@ Json StatusJson(Service& service) {
       {"protocol", kWireVersion},
       {"state", Name(frame.state)},
       {"paused", newest.paused},
+      {"clock", service.clock() == ClockMode::kLockstep ? "lockstep" : "continuous"},
+      {"advancing", newest.advancing},
       {"tick", frame.tick},
       {"time_s", frame.time_s},
       {"dt_s", service.dt()},
@@ -132,6 +135,30 @@ Outcome Hello(Service&, const Params& params, Client&) {
                                 "protocol",
                                 {std::to_string(kWireVersion)}});
   return {.result = {{"protocol", kWireVersion}, {"version", Version()}, {"server", "regraspd"}}};
+}
+
+Outcome Identity(Service& service, const Params&, Client&) {
+  const SessionConfig& session = service.config().control.session;
+  LoadedScenario model = session.model;
+  model.object = *service.accepted.object;
+  const ModelHashes hashes = HashModels(model);
+  Parameters defaults = DefaultParameters(model);
+  Json changed = Json::object();
+  for (const ParameterInfo& info : ParameterTable()) {
+    Json value = ParameterJson(info, service.accepted.parameters).at("value");
+    if (value != ParameterJson(info, defaults).at("value"))
+      changed[std::string(info.name)] = std::move(value);
+  }
+  const auto named = [](const std::string& name, std::uint64_t hash) {
+    return Json{{"name", name}, {"hash", HashText(hash)}};
+  };
+  return {.result = {{"build", BuildIdentity()},
+                     {"stepper", session.world.stepper == Stepper::kExact ? "exact" : "fast"},
+                     {"models",
+                      {{"scenario", named(model.scenario.name, hashes.scenario)},
+                       {"hand", named(model.hand.name, hashes.hand)},
+                       {"object", named(model.object.name, hashes.object)}}},
+                     {"parameters", std::move(changed)}}};
 }
 
 Outcome VersionOf(Service&, const Params&, Client&) {

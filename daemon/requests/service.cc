@@ -181,7 +181,7 @@ Json Service::Topic(const std::string& topic) {
   return StatusJson(*this);
 }
 
-double Service::real_time_factor() const { return newest_.paused ? 0.0 : real_time_factor_; }
+double Service::real_time_factor() const { return newest_.advancing ? real_time_factor_ : 0.0; }
 
 std::vector<std::string> Service::Names(NameSource source) const {
   std::vector<std::string> names;

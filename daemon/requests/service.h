@@ -108,6 +108,7 @@ class Service {
   double dt() const { return config_.control.session.world.dt; }
   double real_time_factor() const;
   double speed() const { return config_.control.speed; }
+  ClockMode clock() const { return config_.control.clock; }
   std::chrono::steady_clock::time_point started() const { return started_; }
   /// The names behind a dynamic enumeration, now.
   std::vector<std::string> Names(NameSource source) const;

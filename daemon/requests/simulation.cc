@@ -12,6 +12,7 @@ namespace regrasp::handlers {
 namespace {
 
 constexpr double kLeastAxis = 1e-9;  // shorter than this, an axis has no direction
+constexpr std::int64_t kMostStepTicks = 1'000'000'000;
 constexpr double kLeastMove = 1e-9;  // shorter than this, an offset [m] or rotation [rad] is none
 
 /// Checks, makes a job and queues the command that works on it.
@@ -166,15 +167,27 @@ Outcome Resume(Service& service, const Params&, Client&) {
 Outcome Step(Service& service, const Params& params, Client&) {
   service.CheckNotRestoring();
   service.CheckNotFaulted();
-  if (!service.accepted.paused)
+  const JobRecord* job = service.jobs().Unfinished();
+  const bool until_job_ends = params.Bool("until_job_ends", false);
+  if (!service.accepted.paused && service.clock() == ClockMode::kContinuous)
     throw RpcException(ErrorCode::kBadState, "the simulation is not paused", "regrasp pause");
+  if (!service.accepted.paused && job)
+    throw RpcException(ErrorCode::kBusy,
+                       fmt::format("time advances by itself: job {} is running", job->id),
+                       fmt::format("regrasp job wait {}", job->id));
+  if (until_job_ends && !job)
+    throw RpcException(ErrorCode::kBadState, "no job is running that could end",
+                       "regrasp grasp, then regrasp step --until-job-ends --wait");
   if (const JobRecord* step = service.jobs().UnfinishedStep())
     throw RpcException(ErrorCode::kBusy, fmt::format("another step is running (job {})", step->id),
                        fmt::format("regrasp job wait {}", step->id));
   const std::int64_t id = service.jobs().Add(JobMethod::kStep).id;
   try {
-    const std::uint64_t barrier = service.Post(
-        {.kind = ControlRequest::Kind::kStep, .job = id, .ticks = params.Integer("ticks", 1)});
+    const std::uint64_t barrier =
+        service.Post({.kind = ControlRequest::Kind::kStep,
+                      .job = id,
+                      .ticks = params.Integer("ticks", until_job_ends ? kMostStepTicks : 1),
+                      .until_job_ends = until_job_ends});
     return {.result = {{"job", id}}, .barrier = barrier};
   } catch (...) {
     service.jobs().Withdraw(id);

@@ -275,7 +275,8 @@ void Connection::Tick(std::int64_t sub) {
     subscription.timer.expires_at(std::max(subscription.timer.expiry() + subscription.period,
                                            std::chrono::steady_clock::now()));
     Service& service = self->owner_->service();
-    if (service.frame_number() != subscription.last_frame) {
+    // Where time stands still the same frame is told again: who counts samples does not hang.
+    if (service.frame_number() != subscription.last_frame || !service.newest().advancing) {
       subscription.last_frame = service.frame_number();
       if (self->unsent() > kStreamHighWater)
         ++subscription.dropped;

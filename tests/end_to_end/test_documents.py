@@ -73,7 +73,10 @@ class Documents(DaemonCase):
 
     def prepare(self, words):
         """What an example takes for granted: a daemon that holds the object (job 1), and for `job cancel` a second job."""
-        self.run_line("regrasp up --speed max && regrasp resume")
+        # Options of an `up` before this one may differ: then another daemon takes its place.
+        self.run_line("regrasp down || true" if words == "up" else "(regrasp up --speed max || (regrasp down && regrasp up --speed max)) && regrasp resume")
+        if words == "step":
+            self.run_line("regrasp reset --seed 1")
         if words in ("release", "rotate", "move", "explore", "grasp", "push", "job cancel"):
             self.run_line("regrasp reset --seed 1 && regrasp noise preset paper && regrasp param set object.friction 0.8 && regrasp param set gravity 0,0,-9.81")
             if words != "grasp":

@@ -1,0 +1,127 @@
+"""The lockstep clock: what comes out depends on what was asked, not on when; and a simulation that stands still says so."""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+from harness import DaemonCase, SOURCE
+
+LINES = ["reset --seed 1", "grasp --wait", "explore ring --wait", "rotate --angle 90 --wait"]
+
+
+class Lockstep(DaemonCase):
+    """`regrasp up --speed max` is in lockstep by itself."""
+
+    def typed(self):
+        """Everything that the lines of README print, and the state they lead to. Jobs are numbered on."""
+        printed = [re.sub(r"job \d+", "job", self.regrasp(*line.split()).stdout) for line in LINES]
+        status = self.json("status")
+        return printed, status["tick"], status["state_hash"]
+
+    def test_the_same_lines_give_the_same_figures(self):
+        self.assertEqual(self.json("status")["clock"], "lockstep")
+        first = self.typed()
+        self.assertIn("noise-free", first[0][2])
+        self.assertRegex(first[0][3], r"angle +[\d.]+° \(0\.2")
+        self.json("truth"), self.json("quality"), self.json("events")  # looking takes no time
+        self.assertEqual(self.typed(), first)
+        with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:
+            self.addCleanup(busy.kill)
+            self.assertEqual(self.typed(), first)
+            busy.kill()
+        self.expect(0, "down")
+        self.expect(0, "up", "--speed", "max", "--seed", "1", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
+        self.assertEqual(self.typed(), first)
+
+    def test_time_stands_still_between_jobs(self):
+        self.expect(0, "grasp", "--wait")
+        end = self.json("status")["tick"]
+        self.expect(0, "param", "set", "control.grip_force", "1.5")
+        self.expect(0, "push", "--force", "0,0.2,0")
+        status = self.json("status")
+        self.assertEqual((status["tick"], status["advancing"], status["state"]), (end, False, "holding"))
+        self.assertEqual(self.json("explore", "ring", "--max-cycles", "50", "--wait", code=1)["start_tick"], end)  # 50 cycles are few
+        tick = self.json("status")["tick"]
+        step = self.json("step", "25", "--wait")
+        self.assertEqual((step["state"], step["end_tick"]), ("done", tick + 25))
+        self.assertEqual(self.json("status")["tick"], tick + 25)
+        self.assertIn("no job is running", self.refused(5, "step", "--until-job-ends")[0])
+        # Streams go on, so that what waits for samples does not hang.
+        lines = [json.loads(line) for line in self.expect(0, "--json", "watch", "status", "--rate", "50", "--count", "4").stdout.splitlines()]
+        self.assertEqual({line["tick"] for line in lines}, {tick + 25})
+
+    def test_an_idle_daemon_works_for_nobody(self):
+        self.expect(0, "grasp", "--wait")
+        tasks = pathlib.Path(f"/proc/{self.pid()}/task")
+
+        def worked():
+            """Clock ticks of CPU that each thread has had."""
+            return {task.name: sum(map(int, (task / "stat").read_text().rpartition(")")[2].split()[11:13])) for task in tasks.iterdir()}
+
+        before = worked()
+        control = max(before, key=before.get)  # it has simulated the grasp
+        for _ in range(20):
+            self.json("status")
+        self.assertEqual(worked()[control], before[control])
+        self.assertEqual((tasks / control / "stat").read_text().rpartition(")")[2].split()[0], "S")
+
+    def pid(self):
+        (found,) = [path.parent.name for path in pathlib.Path("/proc").glob("[0-9]*/cmdline") if str(self.socket).encode() in path.read_bytes().split(b"\0")
+                    and b"regraspd" in path.read_bytes().split(b"\0")[0]]
+        return found
+
+
+class Paused(DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1", "--paused"]
+
+    def test_waiting_for_a_paused_simulation_is_refused_at_once(self):
+        for words in (["grasp", "--wait"], ["rotate", "--angle", "90", "--wait"]):
+            cause, hint = self.refused(5, *words)
+            self.assertIn("the simulation is paused", cause)
+            self.assertIn("regrasp resume", hint)
+        self.assertEqual(self.json("job", "list")["jobs"], [])  # not even begun
+
+    def test_step_until_the_job_ends(self):
+        job = self.json("grasp")["job"]
+        step = self.json("step", "--until-job-ends", "--wait")
+        grasp = self.json("job", "show", job)
+        self.assertEqual((step["state"], grasp["state"]), ("done", "done"))
+        self.assertEqual(step["end_tick"], self.json("status")["tick"])
+        self.assertLessEqual(abs(step["end_tick"] - grasp["end_tick"]), 1)
+        self.assertTrue(self.json("status")["paused"])
+
+
+class Continuous(DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1", "--clock", "continuous"]
+
+    def test_time_goes_on_by_itself(self):
+        self.assertEqual(self.json("status")["clock"], "continuous")
+        before = self.json("status")["tick"]
+        while self.json("status")["tick"] == before:
+            pass
+        self.refused(5, "step", "10")
+
+
+class AnotherDaemon(DaemonCase):
+    def test_options_of_a_second_up_are_compared(self):
+        self.assertIn("already running", self.expect(0, "up").stdout)
+        self.expect(0, "up", "--seed", "1", "--speed", "max")
+        cause, hint = self.refused(5, "up", "--seed", "4", "--object", "egg")
+        self.assertIn("seed is 1, not 4; object is sphere, not egg", cause)
+        self.assertIn("regrasp down", hint)
+        self.assertIn("papr", self.refused(2, "up", "--noise", "papr")[0])
+
+    def test_down_and_up_follow_each_other(self):
+        for _ in range(3):
+            self.expect(0, "grasp", "--wait")
+            self.expect(0, "param", "set", "object.friction", "0.05")
+            self.regrasp("explore", "ring", "--wait")  # a drop leaves pictures to draw
+            self.expect(0, "down")
+            self.expect(0, "up", "--speed", "max", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
+
+
+if __name__ == "__main__":
+    unittest.main()
