@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "cli/client/context.h"
 #include "cli/commands/run_files.h"
@@ -13,26 +15,46 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Copies a picture; one that is there already, under whatever name, is left as it is. Throws
+/// CliError(kIo) with `next` to try.
+void CopyTo(const fs::path& target, const std::string& file, const std::string& next) {
+  std::error_code error, ignored;
+  if (fs::equivalent(file, target, ignored)) return;
+  fs::copy_file(file, target, fs::copy_options::overwrite_existing, error);
+  if (error)
+    throw CliError(
+        kIo, fmt::format("cannot copy {} to {}: {}", file, target.string(), error.message()), next);
+}
+
+std::string Bytes(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw CliError(kIo, "cannot read " + file, "ls -l " + file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 ExitCode Plot(Context& context, const Invocation& invocation) {
   if (invocation.Has("show") && !context.out().human()) {
     throw CliError(kUsage, "--show draws for people: it goes with neither --json nor --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " --show");
   }
+  const bool to_stdout = invocation.Text("output") == "-";
+  if (to_stdout && (invocation.Has("show") || !context.out().human()))
+    throw CliError(kUsage,
+                   "-o - writes the picture itself: it goes with none of --show, --json, --csv",
+                   "regrasp plot " + Plain(invocation.params["name"]) + " -o - > FILE.png");
   Invocation request = invocation;
   if (const std::string suffix = fs::path(invocation.Text("output")).extension(); !suffix.empty())
     request.params["file"] = Plain(invocation.params["name"]) + suffix;
   Json answer = context.Call(request);
   std::string file = Plain(At(answer, "path"));
+  if (to_stdout) {
+    context.out().Add(Bytes(file));
+    return kOk;
+  }
   if (invocation.Has("output")) {
     fs::path target = invocation.Text("output");
     if (fs::is_directory(target)) target /= Plain(At(answer, "file"));
-    std::error_code error;
-    fs::copy_file(file, target, fs::copy_options::overwrite_existing, error);
-    if (error) {
-      throw CliError(
-          kIo, fmt::format("cannot copy {} to {}: {}", file, target.string(), error.message()),
-          "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
-    }
+    CopyTo(target, file, "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
     file = target;
     answer["path"] = fs::absolute(target).string();
     answer["file"] = target.filename().string();
@@ -55,7 +77,9 @@ std::vector<CommandSpec> ResultCommands() {
            {.key = "output",
             .flags = "-o,--output",
             .metavar = "FILE",
-            .help = "copy the picture there; the suffix decides: .png, .jpg, .pdf, .svg",
+            .help =
+                "copy the picture there; the suffix decides: .png, .jpg, .pdf, .svg; - : write it "
+                "to standard output",
             .default_text = "leave it in the daemon's output directory, print its path"},
            {.key = "show",
             .flags = "--show",

@@ -203,6 +203,7 @@ void Figures::Repeats(int repeats) {
   }
   measured_["repeats"] = {
       {"runs", repeats}, {"rose", rose}, {"dropped", dropped}, {"records", records}};
+  if (repeats == 0) return;
   Add("repeats always succeed (50 of 50)",
       fmt::format("{} of {}, other gradient directions", rose, repeats), rose == repeats);
 }

@@ -82,6 +82,9 @@ class Session(DaemonCase):
                         self.assertLessEqual(len(line), 80, line)
 
     def test_csv_has_one_width(self):
+        # A clock that goes on: every line of `watch` is another moment.
+        self.expect(0, "down")
+        self.expect(0, "up", "--speed", "max", "--clock", "continuous", "--models-dir", SOURCE / "models")
         self.expect(0, "grasp", "--wait")
         for words, rows in [(["contacts"], 5), (["joints"], 22), (["job", "list"], 1), (["status"], 1), (["watch", "quality", "--count", "3"], 3)]:
             with self.subTest(words):
@@ -97,7 +100,6 @@ class Session(DaemonCase):
         self.refused(6, "param", "get", "object.frictoin")
         self.refused(8, "call", "nonsense")
         self.refused(2, "call", "status", '{"x": 1}')
-        self.refused(5, "step", "10")
         # What to try is a command; what the daemon hints at is part of the cause.
         for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.01 ... 1", "regrasp param list"),
                                           (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
@@ -132,6 +134,11 @@ class Session(DaemonCase):
         path = self.expect(0, "plot", "quality").stdout.strip()
         self.assertEqual(path, str(self.dir / "out" / "quality.png"))
         self.refused(74, "plot", "quality", "-o", self.dir / "absent" / "x.png")
+        # In the output directory itself it is there already; to standard output it goes as it is.
+        self.expect(0, "plot", "quality", "-o", self.dir / "out" / "quality.png")
+        done = subprocess.run([str(REGRASP), "-s", str(self.socket), "plot", "quality", "-o", "-"], env=environment(), capture_output=True, timeout=HANG_S, check=True)
+        self.assertTrue(done.stdout.startswith(PNG))
+        self.refused(2, "plot", "quality", "-o", "-", "--show")
 
     def test_streams_are_json_lines(self):
         lines = [json.loads(line) for line in self.expect(0, "--json", "watch", "status", "--rate", "50", "--count", "5").stdout.splitlines()]
