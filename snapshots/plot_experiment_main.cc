@@ -54,13 +54,13 @@ std::string AxisName(const std::string& axis) {
 /// Explorations at several levels of noise.
 bool IsSweep(const Json& summary) {
   const Json& plan = summary.at("experiment");
-  return plan.at("experiment") != "rotation" && plan.at("noise").size() > 1 &&
+  return !plan.contains("axes") && plan.at("noise").size() > 1 &&
          !plan.contains("cases");
 }
 
 ExperimentPicture PictureOf(const Json& summary) {
   const Json& plan = summary.at("experiment");
-  const bool rotation = plan.at("experiment") == "rotation";
+  const bool rotation = plan.contains("axes");
   const bool map = !rotation && plan.at("rays").get<int>() > 0;
   const bool sweep = plan.at("noise").size() > 1;
   ExperimentPicture picture;

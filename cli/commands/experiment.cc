@@ -9,6 +9,7 @@
 #include "cli/experiment/experiments.h"
 #include "cli/experiment/paper.h"
 #include "cli/experiment/summary.h"
+#include "cli/experiment/tables.h"
 
 namespace regrasp::cli {
 namespace {
@@ -18,13 +19,25 @@ namespace fs = std::filesystem;
 constexpr const char* kGroup = "Results";
 constexpr double kMostSeeds = 1e6;
 
-void Print(Context& context, const Json& summary, const fs::path& directory) {
+/// What `--format text` shows, and the tables alone as a paper takes them.
+void Print(Context& context, const Invocation& invocation, const Json& summary,
+           const fs::path& directory) {
+  const TableFormat format = TableFormatOf(invocation.Text("format", "text"));
+  std::vector<TableData> tables = {GroupTable(summary)};
+  if (summary.contains("comparisons")) tables.push_back(ComparisonTable(summary));
+  if (invocation.Has("precision"))
+    tables.push_back(
+        SampleSizeTable(summary, ParseNumber(invocation.Text("precision"), "--precision")));
   Json answer = summary;
   answer["output_dir"] = fs::absolute(directory).string();
   std::vector<Json> rows(summary.at("groups").begin(), summary.at("groups").end());
   context.PrintRows(answer, rows, [&] {
     Output& out = context.out();
-    out.Add(SummaryTable(out, summary));
+    for (const TableData& table : tables) {
+      if (&table != &tables.front()) out.Line();
+      out.Add(Render(out, table, format));
+    }
+    if (format != TableFormat::kText) return;
     out.Line();
     out.Line("trials   " + (directory / "trials.csv").string());
     out.Line("summary  " + (directory / "summary.json").string());
@@ -38,7 +51,8 @@ ExitCode Experiment(Context& context, const Invocation& invocation) {
   Plan plan = PlanFromArguments(name, invocation);
   CompletePlan(&plan);
   const fs::path directory = invocation.Text("output");
-  Print(context, RunExperiment(context, plan, Workers(invocation), directory), directory);
+  Print(context, invocation, RunExperiment(context, plan, Workers(invocation), directory),
+        directory);
   return kOk;
 }
 
@@ -56,7 +70,7 @@ ExitCode Merge(Context& context, const Invocation& invocation) {
                      fmt::format("{} holds another experiment than {}: {}", part.string(),
                                  parts.front().string(), difference),
                      "regrasp help experiment merge");
-    for (const auto& [unit, result] : ReadTrials(part)) {
+    for (const auto& [unit, result] : ReadTrials(part, plan)) {
       const auto [place, fresh] = trials.emplace(unit, result);
       if (!fresh && !(place->second == result))
         throw CliError(
@@ -74,7 +88,7 @@ ExitCode Merge(Context& context, const Invocation& invocation) {
   Store store(directory, whole);
   for (const auto& [unit, result] : trials)
     if (!store.trials().contains(unit)) store.Add(unit, result);
-  Print(context, WriteResults(whole, store.trials(), directory), directory);
+  Print(context, invocation, WriteResults(whole, store.trials(), directory), directory);
   return kOk;
 }
 
@@ -96,6 +110,12 @@ Arg Number(const char* key, const char* flags, ArgKind kind, const char* metavar
           .default_text = default_text};
 }
 
+Arg TableFormatArg() {
+  Arg arg = Text("format", "--format", "NAME", "tables as text, markdown or latex", "text");
+  arg.values = {"text", "markdown", "latex"};
+  return arg;
+}
+
 Arg OutputDirectory() {
   Arg arg =
       Text("output", "-o,--output", "DIR", "where results go; unfinished ones go on from there");
@@ -104,12 +124,16 @@ Arg OutputDirectory() {
 }
 
 std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* noise) {
-  Arg set =
-      Text("set", "--set", "NAME=VALUE", "a parameter of the daemon, as in param set; repeatable");
+  Arg set = Text(
+      "set", "--set", "NAME=VALUE",
+      "a parameter of the daemon, as in param set; values with commas are compared; repeatable");
   set.repeated = true;
-  Arg cases = Text("case", "--case", "'NAME: KEY=VALUE ...'",
-                   "settings to compare: object, tilt, push, parameters; repeatable");
+  Arg cases =
+      Text("case", "--case", "'NAME: KEY=VALUE ...'",
+           "settings to compare: object, tilt, push, turns, criterion, parameters; repeatable");
   cases.repeated = true;
+  Arg stepper = Text("stepper", "--stepper", "NAME", "fast, or exact: the slow reference", "fast");
+  stepper.values = {"fast", "exact"};
   for (const Arg& arg :
        {Text("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
         Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,
@@ -119,13 +143,23 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
         Text("object", "--object", "NAME|FILE", "the object", "the scenario's"),
         Number("tilt", "--tilt", ArgKind::kNumber, "DEG",
                "tilt of the hand: 0 palm up, 90 fingers down", -180, 180, "the scenario's"),
-        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases,
+        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases, stepper,
         Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N",
                "daemons at work; the results do not depend on it", 1, 256, "one per core"),
         Text("shard", "--shard", "i/N", "only every N-th trial, from the i-th; join with merge"),
+        TableFormatArg(),
+        Number("precision", "--precision", ArgKind::kNumber, "P",
+               "how many seeds make intervals of +-P: of shares absolute, of all else relative",
+               0.001, 0.49, "not told"),
         OutputDirectory()})
     args.push_back(arg);
+  return args;
+}
+
+/// A zoo's cases are its objects.
+std::vector<Arg> WithoutObject(std::vector<Arg> args) {
+  std::erase_if(args, [](const Arg& arg) { return arg.key == "object" || arg.key == "case"; });
   return args;
 }
 
@@ -165,6 +199,20 @@ std::vector<CommandSpec> ExperimentCommands() {
                     "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
             "10", "paper"),
        Experiment},
+      {"experiment zoo", kGroup,
+       "turn many objects by either gait, paired; which gait does better on which", nullptr,
+       WithoutObject(With(
+           {Text("objects", "--objects", "NAMES", "separated by commas; zoo: all of it", "zoo"),
+            Text("gaits", "--gaits", "NAMES", "the first is what others are compared with",
+                 "returning,exploring"),
+            Text("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
+            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
+            Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
+                   "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
+            Number("push", "--push", ArgKind::kNumber, "N",
+                   "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
+           "5", "paper")),
+       Experiment},
       {"experiment noise-sweep", kGroup,
        "explorations at every noise preset, the estimators side by side", nullptr,
        With(ExplorationArgs("both"), "20", "off,fine,paper,coarse,taxel"), Experiment},
@@ -192,7 +240,7 @@ std::vector<CommandSpec> ExperimentCommands() {
        kGroup,
        "join the shards of an experiment",
        nullptr,
-       {directories, OutputDirectory()},
+       {directories, TableFormatArg(), OutputDirectory()},
        Merge},
   };
 }

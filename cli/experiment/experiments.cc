@@ -12,15 +12,73 @@
 
 namespace regrasp::cli {
 
+namespace {
+
+/// What decides the results of a case, as its daemon tells.
+void AddIdentity(const Json& identity, std::size_t which, Plan* plan) {
+  Json models = Json::object();
+  for (const auto& [kind, model] : identity.at("models").items())
+    models[kind] = fmt::format("{} {}", Plain(model.at("name")), Plain(model.at("hash")));
+  const Json& parameters = identity.at("parameters");
+  if (plan->cases.empty()) {
+    plan->models = models;
+    plan->parameters = parameters;
+  } else {
+    plan->models[plan->cases.at(which).name] = models;
+    plan->parameters[plan->cases.at(which).name] = parameters;
+  }
+}
+
+/// The objects of a zoo by name, and its cases. Throws CliError(kUsage) where one is unknown.
+void AddZoo(SteppedDaemon* daemon, Plan* plan) {
+  const Json reset = daemon->Call("describe", {{"method", "reset"}}).at("methods").at(0);
+  std::vector<std::string> known;
+  for (const Json& parameter : reset.at("params"))
+    if (parameter.at("name") == "object")
+      known = parameter.at("values").get<std::vector<std::string>>();
+  if (plan->objects == std::vector<std::string>{"zoo"}) {
+    plan->objects.clear();
+    std::copy_if(known.begin(), known.end(), std::back_inserter(plan->objects),
+                 [](const std::string& name) { return name.starts_with("zoo_"); });
+  }
+  for (const std::string& name : plan->objects)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw CliError(
+          kUsage, fmt::format("--objects '{}' is none of {}, zoo", name, fmt::join(known, ", ")),
+          fmt::format("regrasp experiment zoo --objects {} -o DIR", NearestName(name, known)));
+  ExpandZoo(plan);
+}
+
+}  // namespace
+
 void CompletePlan(Plan* plan) {
+  if (plan->experiment == "zoo" && plan->cases.empty()) {
+    SteppedDaemon daemon(plan->DaemonArguments());
+    AddZoo(&daemon, plan);
+  }
+  const auto sweeps = [plan] {
+    return std::any_of(plan->common.set.begin(), plan->common.set.end(),
+                       [](const auto& item) { return item.second.find(',') != std::string::npos; });
+  };
+  if (sweeps()) {
+    SteppedDaemon daemon(plan->DaemonArguments());
+    ExpandSweeps(plan, [&daemon](const std::string& name) {
+      return daemon.Call("param.get", {{"name", name}}).at("value").is_array();
+    });
+  }
+  plan->models = plan->parameters = Json::object();
   for (std::size_t i = 1; i < plan->num_cases(); ++i) {
     SteppedDaemon daemon(plan->DaemonArguments(i));
     Prepare(&daemon, *plan, i);
+    AddIdentity(daemon.Call("identity"), i, plan);
   }
   SteppedDaemon daemon(plan->DaemonArguments());
   plan->version = Plain(daemon.Call("version").at("version"));
   plan->build = DaemonBuild();
   Prepare(&daemon, *plan);
+  const Json identity = daemon.Call("identity");
+  plan->built_from = Plain(identity.at("build"));
+  AddIdentity(identity, 0, plan);
   if (plan->rotation()) return;
   std::vector<std::string> fingers;
   const Json contacts = daemon.Call("contacts");

@@ -10,7 +10,8 @@
 
 namespace regrasp::cli {
 
-/// Fills in what only a daemon knows: the fingers' names for "all", version and build. Throws
+/// Fills in what only a daemon knows: the fingers' names for "all", version and build, and what
+/// decides the results of every case. Throws
 /// CliError when it does not take the plan's parameters or has no such finger.
 void CompletePlan(Plan* plan);
 

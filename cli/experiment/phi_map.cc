@@ -79,6 +79,7 @@ PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed
               const std::string& finger, const std::string& criterion, int rays) {
   PhiMap map;
   map.samples = Json::array();
+  daemon->LeaveFault();
   const auto parameter = [&](const char* name) {
     return daemon->Call("param.get", {{"name", name}}).at("value");
   };
@@ -95,9 +96,11 @@ PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed
       daemon->Call("param.set", {{"name", name}, {"value", value}});
     Ray(daemon, finger, criterion, ray, SeedOfDirection(2 * std::numbers::pi * ray / rays), cycles,
         &map);
+    daemon->LeaveFault();
     for (std::size_t i = 0; i < kStraight.size(); ++i)
       daemon->Call("param.set", {{"name", kStraight[i].first}, {"value", before[i]}});
   }
+  daemon->LeaveFault();
   daemon->Call("noise.set", {{"preset", noise}});
   return map;
 }

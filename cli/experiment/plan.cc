@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -61,6 +62,29 @@ std::pair<int, int> Shard(const std::string& text) {
   return {static_cast<int>(i), static_cast<int>(n)};
 }
 
+/// Models and parameters are told by name, all else as a whole.
+void AddDifference(const std::string& key, const Json& was, const Json& is, std::string* text) {
+  if (was == is) return;
+  const bool nested = key.starts_with("models") || key.starts_with("parameters");
+  if (nested && was.is_object() && is.is_object()) {
+    for (const auto& [name, value] : was.items())
+      AddDifference(key + "." + name, value, At(is, name.c_str()), text);
+    for (const auto& [name, value] : is.items())
+      if (!was.contains(name)) AddDifference(key + "." + name, Json(), value, text);
+    return;
+  }
+  *text += fmt::format("{}{} was {}, is {}", text->empty() ? "" : "; ", key, was.dump(), is.dump());
+}
+
+/// Throws CliError(kUsage) when a parameter is given twice.
+void CheckGivenOnce(const Setting& setting, const std::string& where) {
+  std::set<std::string> names;
+  for (const auto& [name, value] : setting.set)
+    if (!names.insert(name).second)
+      throw CliError(kUsage, fmt::format("{}: {} is given twice", where, name),
+                     fmt::format("give {} once", name));
+}
+
 std::int64_t Integer(const Invocation& invocation, const char* key, const char* otherwise) {
   return static_cast<std::int64_t>(
       ParseNumber(invocation.Text(key, otherwise), std::string("--") + key));
@@ -77,6 +101,11 @@ Unit Plan::unit(std::size_t index) const {
   const std::size_t per_noise = n * subjects.size(), per_case = per_noise * noise.size();
   return {index / per_case, noise[index % per_case / per_noise],
           subjects[index / n % subjects.size()], first_seed + static_cast<std::int64_t>(index % n)};
+}
+
+std::size_t Plan::Grown(std::size_t index, std::int64_t of_seeds) const {
+  const auto before = static_cast<std::size_t>(of_seeds);
+  return index / before * static_cast<std::size_t>(seeds) + index % before;
 }
 
 Setting Plan::setting(std::size_t which) const {
@@ -106,6 +135,7 @@ std::string Plan::Command(const Unit& unit, const std::string& estimator) const 
   if (common.tilt_deg) text += fmt::format(" --tilt {}", *common.tilt_deg);
   if (common.push_n > 0) text += fmt::format(" --push {}", common.push_n);
   for (const auto& [name, value] : common.set) text += fmt::format(" --set {}={}", name, value);
+  if (stepper != "fast") text += " --stepper " + stepper;
   if (!cases.empty()) text += fmt::format(" --case '{}'", Text(cases.at(unit.which)));
   return text + " -o trial";
 }
@@ -116,6 +146,7 @@ std::vector<std::string> Plan::DaemonArguments(std::size_t which) const {
   for (const auto& [flag, value] : {std::pair{"--hand", hand}, std::pair{"--object", object},
                                     std::pair{"--models-dir", models_dir}})
     if (!value.empty()) words.insert(words.end(), {flag, value});
+  words.insert(words.end(), {"--stepper", stepper});
   return words;
 }
 
@@ -140,8 +171,14 @@ Json ToJson(const Plan& p) {
   if (p.common.push_n > 0) json["push_n"] = p.common.push_n;
   json["set"] = set;
   for (const Case& c : p.cases) json["cases"].push_back(Text(c));
+  for (const Case& c : p.cases)
+    if (!c.against.empty()) json["against"][c.name] = c.against;
+  json["stepper"] = p.stepper;
+  json["parameters"] = p.parameters;
+  json["models"] = p.models;
   json["version"] = p.version;
   json["build"] = p.build;
+  json["built_from"] = p.built_from;
   if (p.shards > 1) json["shard"] = fmt::format("{}/{}", p.shard, p.shards);
   return json;
 }
@@ -169,6 +206,14 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
     for (const auto& [name, value] : json.at("set").items()) p.common.set.emplace_back(name, value);
     if (json.contains("cases"))
       for (const std::string text : json.at("cases")) p.cases.push_back(ParseCase(text));
+    for (Case& c : p.cases)
+      if (const Json& against = At(At(json, "against"), c.name.c_str()); against.is_string())
+        c.against = against;
+    // Written by versions before 0.2: unknown, and so not the same as what is known.
+    p.stepper = json.value("stepper", "unknown");
+    p.parameters = At(json, "parameters");
+    p.models = At(json, "models");
+    p.built_from = json.value("built_from", "unknown");
     p.version = json.at("version");
     p.build = json.at("build");
     if (json.contains("shard")) std::tie(p.shard, p.shards) = Shard(json.at("shard"));
@@ -180,18 +225,44 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
 }
 
 std::string Difference(const Plan& before, const Plan& now) {
-  const Json a = ToJson(before), b = ToJson(now);
+  Json a = ToJson(before), b = ToJson(now);
+  a.erase("shard");
+  b.erase("shard");
   std::string text;
-  const auto add = [&](const std::string& key) {
-    const Json &was = At(a, key.c_str()), &is = At(b, key.c_str());
-    if (was != is && key != "shard")
-      text +=
-          fmt::format("{}{} was {}, is {}", text.empty() ? "" : "; ", key, was.dump(), is.dump());
-  };
-  for (const auto& [key, value] : a.items()) add(key);
+  for (const auto& [key, value] : a.items()) AddDifference(key, value, At(b, key.c_str()), &text);
   for (const auto& [key, value] : b.items())
-    if (!a.contains(key)) add(key);
+    if (!a.contains(key)) AddDifference(key, Json(), value, &text);
   return text;
+}
+
+void ExpandSweeps(Plan* plan, const std::function<bool(const std::string&)>& is_vector) {
+  std::vector<std::pair<std::string, std::string>> fixed;
+  for (const auto& [name, value] : plan->common.set) {
+    if (value.find(',') == std::string::npos || is_vector(name)) {
+      fixed.emplace_back(name, value);
+      continue;
+    }
+    const auto values = Split(value, ',');
+    if (std::set(values.begin(), values.end()).size() < values.size() ||
+        std::find(values.begin(), values.end(), "") != values.end())
+      throw CliError(kUsage,
+                     fmt::format("--set {}={}: a value is empty or given twice", name, value),
+                     fmt::format("regrasp param get {}", name));
+    plan->cases = Sweep(plan->cases, name, values);
+  }
+  plan->common.set = fixed;
+}
+
+void ExpandZoo(Plan* plan) {
+  for (const std::string& object : plan->objects)
+    for (const std::string& gait : plan->gaits) {
+      Case c;
+      c.name = fmt::format("{}, {}", object, gait);
+      c.setting.object = object;
+      c.setting.set = {{"gait.mode", gait}};
+      c.against = fmt::format("{}, {}", object, plan->gaits.front());
+      plan->cases.push_back(std::move(c));
+    }
 }
 
 Plan PlanFromArguments(const std::string& experiment, const Invocation& invocation) {
@@ -203,7 +274,13 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
       Names(invocation.Text("noise", sweep ? fmt::format("{}", fmt::join(presets, ",")) : "paper"),
             presets, "--noise");
   p.first_seed = Integer(invocation, "seed", "1");
-  p.seeds = Integer(invocation, "seeds", p.rotation() ? "10" : sweep ? "20" : "50");
+  const bool zoo = experiment == "zoo";
+  p.seeds = Integer(invocation, "seeds", zoo ? "5" : p.rotation() ? "10" : sweep ? "20" : "50");
+  if (zoo) {
+    p.objects = Split(invocation.Text("objects", "zoo"), ',');
+    p.gaits = Names(invocation.Text("gaits", "returning,exploring"), {"returning", "exploring"},
+                    "--gaits");
+  }
   if (p.rotation()) {
     p.subjects = Axes(invocation.Text("axis", "0,0,-1"));
     if (invocation.Has("turns") && invocation.Has("angle"))
@@ -232,11 +309,20 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
   p.common.push_n = ParseNumber(invocation.Text("push", "0"), "--push");
   for (const auto& word : Split(invocation.Text("set"), '\n'))
     p.common.set.push_back(NameAndValue(word, "--set"));
+  CheckGivenOnce(p.common, "--set");
+  p.stepper = invocation.Text("stepper", "fast");
   for (const auto& text : Split(invocation.Text("case"), '\n')) {
     p.cases.push_back(ParseCase(text));
     const Case& c = p.cases.back();
+    CheckGivenOnce(c.setting, fmt::format("--case '{}'", text));
     if ((c.setting.push_n != 0 || c.setting.turns) && !p.rotation())
       throw CliError(kUsage, fmt::format("--case '{}': push and turns are for rotations", text));
+    if (!c.setting.criterion.empty()) {
+      if (p.rotation())
+        throw CliError(kUsage, fmt::format("--case '{}': a criterion is for explorations", text));
+      Names(c.setting.criterion, ValuesOf("explore", "criterion"),
+            fmt::format("--case '{}': criterion", text));
+    }
     if (c.setting.turns == 0.0)
       throw CliError(kUsage, fmt::format("--case '{}': 0 turns leave nothing to turn", text));
     if (std::count_if(p.cases.begin(), p.cases.end(),

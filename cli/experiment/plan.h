@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,22 +31,31 @@ struct UnitResult {
 };
 
 struct Plan {
-  std::string experiment;        ///< "exploration", "noise-sweep", "rotation"
+  std::string experiment;        ///< "exploration", "noise-sweep", "rotation", "zoo"
   std::string hand, models_dir;  ///< empty: the daemon's own
   Setting common;                ///< of every trial
   std::vector<Case> cases;       ///< settings to compare; empty: `common` alone
   std::vector<std::string> noise, subjects;
   std::int64_t first_seed = 1, seeds = 0;
-  std::vector<std::string> estimators;  ///< explorations
-  std::string criterion;                ///< explorations
-  int rays = 0;                         ///< explorations: of the map of phi; 0: no map
-  double turns = 0, speed_deg_s = 0;    ///< rotations; speed 0: the parameter's
-  std::string version, build;           ///< of the daemon
-  int shard = 1, shards = 1;            ///< this part, 1 ... shards, takes every shards-th unit
+  std::vector<std::string> estimators;      ///< explorations
+  std::string criterion;                    ///< explorations
+  int rays = 0;                             ///< explorations: of the map of phi; 0: no map
+  double turns = 0, speed_deg_s = 0;        ///< rotations; speed 0: the parameter's
+  std::vector<std::string> objects, gaits;  ///< zoo, until they are cases; objects "zoo": all of it
+  std::string stepper = "fast";             ///< fast or exact
+  // Of the daemon, filled in by CompletePlan():
+  std::string version, build;  ///< build: over the bytes of the program
+  std::string built_from;      ///< commit, compiler, flags
+  Json models;      ///< {"hand": "NAME HASH", "scenario", "object"}; with cases {CASE: {...}}
+  Json parameters;  ///< {NAME: value} where they differ from the defaults; likewise
+  int shard = 1, shards = 1;  ///< this part, 1 ... shards, takes every shards-th unit
 
-  bool rotation() const { return experiment == "rotation"; }
+  bool rotation() const { return experiment == "rotation" || experiment == "zoo"; }
   std::size_t num_units() const;
   Unit unit(std::size_t index) const;
+  /// The place among the units of this plan of one that has place `index` in the same plan with
+  /// `of_seeds` seeds, at most this plan's.
+  std::size_t Grown(std::size_t index, std::int64_t of_seeds) const;
   /// Indices of the units of this shard, ascending.
   std::vector<std::size_t> Mine() const;
   /// At least 1.
@@ -53,6 +63,11 @@ struct Plan {
   Setting setting(std::size_t which) const;
   /// Rotations: turns of a case.
   double TurnsOf(std::size_t which) const { return setting(which).turns.value_or(turns); }
+  /// Explorations: criterion of a case.
+  std::string CriterionOf(std::size_t which) const {
+    const std::string own = setting(which).criterion;
+    return own.empty() ? criterion : own;
+  }
   /// The command that makes the one row of this unit (and estimator) again.
   std::string Command(const Unit& unit, const std::string& estimator) const;
   /// Arguments for the daemon of a case.
@@ -63,12 +78,20 @@ struct Plan {
 Json ToJson(const Plan& plan);
 /// Throws CliError(kIo) naming `path` when `json` is no plan.
 Plan PlanFromJson(const Json& json, const std::string& path);
-/// "noise was [\"paper\"], is [\"off\"]" for every difference but the shard; empty when there is
-/// none.
+/// "noise was [\"paper\"], is [\"off\"]; models.object was ..., is ..." for every difference but
+/// the shard; empty when there is none.
 std::string Difference(const Plan& before, const Plan& now);
 
-/// The plan that the arguments of `experiment exploration|noise-sweep|rotation` ask for; fingers
-/// ("all") are still to be named, version and build to be filled in. Throws CliError(kUsage).
+/// Makes cases of the values of every `--set NAME=A,B,...` but those of vectors: those are for
+/// which `is_vector` returns true. Throws CliError(kUsage).
+void ExpandSweeps(Plan* plan, const std::function<bool(const std::string& parameter)>& is_vector);
+
+/// Makes the cases of a zoo: every object with every gait, each gait compared with the first.
+void ExpandZoo(Plan* plan);
+
+/// The plan that the arguments of `experiment exploration|noise-sweep|rotation|zoo` ask for;
+/// fingers ("all") and the zoo's objects are still to be named, sweeps to be expanded, version and
+/// build to be filled in. Throws CliError(kUsage).
 Plan PlanFromArguments(const std::string& experiment, const Invocation& invocation);
 
 }  // namespace regrasp::cli

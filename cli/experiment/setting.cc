@@ -48,6 +48,8 @@ Case ParseCase(const std::string& text) {
       c.setting.push_n = ParseNumber(value, "--case push");
     else if (key == "turns")
       c.setting.turns = ParseNumber(value, "--case turns");
+    else if (key == "criterion")
+      c.setting.criterion = value;
     else
       c.setting.set.emplace_back(key, value);
   }
@@ -59,6 +61,7 @@ std::string Text(const Case& c) {
   if (!c.setting.object.empty()) text += " object=" + c.setting.object;
   if (c.setting.tilt_deg) text += fmt::format(" tilt={}", *c.setting.tilt_deg);
   if (c.setting.push_n != 0) text += fmt::format(" push={}", c.setting.push_n);
+  if (!c.setting.criterion.empty()) text += " criterion=" + c.setting.criterion;
   if (c.setting.turns) text += fmt::format(" turns={}", *c.setting.turns);
   for (const auto& [name, value] : c.setting.set) text += fmt::format(" {}={}", name, value);
   return text;
@@ -69,11 +72,32 @@ Setting Join(Setting common, const Setting& special) {
   if (special.tilt_deg) common.tilt_deg = special.tilt_deg;
   if (special.push_n != 0) common.push_n = special.push_n;
   if (special.turns) common.turns = special.turns;
+  if (!special.criterion.empty()) common.criterion = special.criterion;
   for (const auto& [name, value] : special.set) {
     std::erase_if(common.set, [&name = name](const auto& item) { return item.first == name; });
     common.set.emplace_back(name, value);
   }
   return common;
+}
+
+std::vector<Case> Sweep(const std::vector<Case>& cases, const std::string& parameter,
+                        const std::vector<std::string>& values) {
+  std::vector<Case> swept;
+  const std::size_t crossed = std::max<std::size_t>(1, cases.size());
+  for (std::size_t i = 0; i < crossed; ++i) {
+    const Case of = cases.empty() ? Case{} : cases[i];
+    const auto name = [&](const std::string& value) {
+      return fmt::format("{}{}{}={}", of.name, of.name.empty() ? "" : ", ", parameter, value);
+    };
+    for (const std::string& value : values) {
+      Case c = of;
+      c.name = name(value);
+      c.setting.set.emplace_back(parameter, value);
+      c.against = name(values.front());
+      swept.push_back(std::move(c));
+    }
+  }
+  return swept;
 }
 
 std::vector<std::pair<std::string, Json>> Parameters(const Setting& setting) {

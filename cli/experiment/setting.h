@@ -16,6 +16,7 @@ struct Setting {
   std::optional<double> tilt_deg;  ///< 0 palm up, 90 fingers down; none: the scenario's
   double push_n = 0;               ///< rotations: a push in a random direction, every second
   std::optional<double> turns;     ///< rotations, in a case: instead of the plan's
+  std::string criterion;           ///< explorations, in a case: instead of the plan's
   std::vector<std::pair<std::string, std::string>> set;  ///< parameters, values as typed
 };
 
@@ -23,16 +24,22 @@ struct Setting {
 struct Case {
   std::string name;
   Setting setting;
+  std::string against = {};  ///< the case it is compared with; empty: the first
 };
 
 /// "NAME: KEY=VALUE ..." or "KEY=VALUE ..." (which is then the name, too). KEY is object, tilt,
-/// push, turns or a parameter; "NAME:" alone changes nothing. Throws CliError(kUsage).
+/// push, turns, criterion or a parameter; "NAME:" alone changes nothing. Throws CliError(kUsage).
 Case ParseCase(const std::string& text);
 /// The inverse: ParseCase(Text(c)) is c.
 std::string Text(const Case& c);
 
 /// `common` with what `special` says differently.
 Setting Join(Setting common, const Setting& special);
+
+/// The cases of a sweep: for each of `cases` (or for none) one per value, in their order. Each is
+/// compared with the one that has the first value and is otherwise the same.
+std::vector<Case> Sweep(const std::vector<Case>& cases, const std::string& parameter,
+                        const std::vector<std::string>& values);
 
 /// Parameters as `param set` takes them, the tilt among them as gravity: of the scenario's
 /// strength, in the plane of W's y and z. Throws CliError(kUsage) where a value is no number.

@@ -24,4 +24,19 @@ double Quantile(const std::vector<double>& values, double share) {
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
+std::optional<Interval> MedianInterval(const std::vector<double>& values) {
+  const std::size_t n = values.size();
+  // P(at most k of n values lie below the median), each with probability 1/2, must not exceed 2.5
+  // %.
+  double probability = std::pow(0.5, static_cast<double>(n)), tail = probability;
+  std::size_t rank = 0;  // values outside the interval at either end
+  while (tail <= 0.025 && rank < n / 2) {
+    ++rank;
+    probability *= static_cast<double>(n - rank + 1) / static_cast<double>(rank);
+    tail += probability;
+  }
+  if (rank == 0) return std::nullopt;
+  return Interval{values[rank - 1], values[n - rank]};
+}
+
 }  // namespace regrasp::cli

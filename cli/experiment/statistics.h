@@ -2,6 +2,7 @@
 
 /// Statistics of an experiment's summary.
 
+#include <optional>
 #include <vector>
 
 namespace regrasp::cli {
@@ -18,5 +19,10 @@ Interval WilsonInterval(int successes, int trials);
 /// The `share` quantile of `values`, 0 <= share <= 1, linear between the order statistics (R's type
 /// 7). `values`: at least one, ascending.
 double Quantile(const std::vector<double>& values, double share);
+
+/// 95 % interval of the median from order statistics, which holds for any continuous distribution:
+/// the narrowest pair of the same rank from both ends that covers the median with at least 95 %.
+/// None below six values, where no pair does. `values`: ascending.
+std::optional<Interval> MedianInterval(const std::vector<double>& values);
 
 }  // namespace regrasp::cli

@@ -31,8 +31,12 @@ SteppedDaemon::SteppedDaemon(std::vector<std::string> arguments)
     : daemon_(WithSpeed(std::move(arguments))), client_(daemon_.socket(), kNoLimit) {}
 
 void SteppedDaemon::Step(std::int64_t ticks) {
-  const Json step = Call("step", {{"ticks", ticks}});
-  Call("job.wait", {{"id", step.at("job")}});
+  try {
+    const Json step = Call("step", {{"ticks", ticks}});
+    Call("job.wait", {{"id", step.at("job")}});
+  } catch (const CliError& error) {
+    if (error.code != kSimulationFault) throw;
+  }
 }
 
 Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
@@ -41,7 +45,7 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
   try {
     job = Call(method, params);
   } catch (const CliError& error) {
-    if (error.rpc_code == 0 || error.code != kRefused) throw;
+    if (error.rpc_code == 0 || (error.code != kRefused && error.code != kSimulationFault)) throw;
     return {{"method", method}, {"state", "failed"}, {"error", error.what()}};
   }
   Json record;
@@ -55,6 +59,10 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
     if (!Running(record)) break;
   }
   return record;
+}
+
+void SteppedDaemon::LeaveFault() {
+  if (Plain(At(Call("status"), "state")) == "faulted") Call("reset");
 }
 
 Json SteppedDaemon::Grasp(std::int64_t seed) {

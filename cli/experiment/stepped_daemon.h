@@ -22,13 +22,16 @@ class SteppedDaemon {
     return client_.Call(method, params);
   }
   /// Advances by `ticks`; the topics (status, truth, quality, ...) are then those of the last of
-  /// them.
+  /// them. A simulation that has faulted stays where it is.
   void Step(std::int64_t ticks);
   /// Sends a command that starts a job and steps in chunks until the job has ended, or has not
   /// after `max_ticks`. Returns its record. A command that is refused at once gives a record whose
-  /// state is "failed" and whose error says why. `look` is called after each chunk.
+  /// state is "failed" and whose error says why, as does one on a simulation that has faulted.
+  /// `look` is called after each chunk.
   Json Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
            std::int64_t max_ticks, const std::function<void()>& look = {});
+  /// Begins a new run when the present one has faulted: what follows is accepted again.
+  void LeaveFault();
   /// A run in which the object is in the hand. Returns the record of the grasp. Where seed, noise
   /// and parameters are those of the last grasp it is not made again: the run goes on from the
   /// state that it led to, which is the same to the last bit.

@@ -65,13 +65,16 @@ Plan ReadPlan(const fs::path& directory) {
   return PlanFromJson(Json::parse(ReadFile(path), nullptr, false), path.string());
 }
 
-Trials ReadTrials(const fs::path& directory) {
+Trials ReadTrials(const fs::path& directory, const Plan& plan) {
   Trials trials;
   std::ifstream file(directory / kTrialsFile);
   for (std::string line; std::getline(file, line);) {
     const Json json = Json::parse(line, nullptr, false);
-    if (At(json, "unit").is_number_unsigned() && At(json, "rows").is_array())
-      trials[json["unit"].get<std::size_t>()] = ResultOf(json);
+    if (!At(json, "unit").is_number_unsigned() || !At(json, "rows").is_array()) continue;
+    const std::int64_t seeds = json.value("seeds", plan.seeds);
+    if (seeds < 1 || seeds > plan.seeds) continue;
+    const std::size_t unit = plan.Grown(json["unit"], seeds);
+    if (unit < plan.num_units()) trials[unit] = ResultOf(json);
   }
   return trials;
 }
@@ -89,7 +92,8 @@ void WriteFile(const fs::path& path, const std::string& text) {
   if (::close(fd) != 0 || ::rename(next.c_str(), path.c_str()) != 0) throw IoError("write", path);
 }
 
-Store::Store(fs::path directory, const Plan& plan) : directory_(std::move(directory)) {
+Store::Store(fs::path directory, const Plan& plan)
+    : directory_(std::move(directory)), seeds_(plan.seeds) {
   std::error_code error;
   fs::create_directories(directory_, error);
   if (error)
@@ -105,7 +109,9 @@ Store::Store(fs::path directory, const Plan& plan) : directory_(std::move(direct
     if (!fs::exists(directory_ / kPlanFile)) {
       WriteFile(directory_ / kPlanFile, ToJson(plan).dump(1) + "\n");
     } else {
-      const Plan before = ReadPlan(directory_);
+      Plan before = ReadPlan(directory_);
+      const bool grows = before.seeds < plan.seeds && before.shards == 1 && plan.shards == 1;
+      if (grows) before.seeds = plan.seeds;
       std::string difference = Difference(before, plan);
       if (difference.empty() && (before.shard != plan.shard || before.shards != plan.shards))
         difference = fmt::format("shard was {}/{}, is {}/{}", before.shard, before.shards,
@@ -115,8 +121,9 @@ Store::Store(fs::path directory, const Plan& plan) : directory_(std::move(direct
             kRefused,
             fmt::format("{} holds another experiment: {}", directory_.string(), difference),
             kOther);
+      if (grows) WriteFile(directory_ / kPlanFile, ToJson(plan).dump(1) + "\n");
     }
-    trials_ = ReadTrials(directory_);
+    trials_ = ReadTrials(directory_, plan);
     const fs::path path = directory_ / kTrialsFile;
     file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (file_ < 0) throw IoError("write", path);
@@ -135,7 +142,8 @@ Store::~Store() {
 
 void Store::Add(std::size_t unit, const UnitResult& result) {
   const std::string line =
-      Json{{"unit", unit}, {"rows", result.rows}, {"map", result.map}}.dump() + "\n";
+      Json{{"unit", unit}, {"seeds", seeds_}, {"rows", result.rows}, {"map", result.map}}.dump() +
+      "\n";
   WriteAll(file_, line, directory_ / kTrialsFile);
   // As it will be read again, so that a run in one go and one in two give the same bytes.
   trials_[unit] = ResultOf(Json::parse(line));

@@ -2,7 +2,8 @@
 
 /// An experiment's directory:
 ///   experiment.json  the plan
-///   trials.jsonl     a line for each finished unit, in the order in which they finished
+///   trials.jsonl     a line for each finished unit, in the order in which they finished, with the
+///                    number of seeds that its place among the units belongs to
 ///   trials.csv, maps.csv, summary.json, summary.png    made from these when all have finished
 /// A line is written at once when its unit has finished; a line cut off by a crash is ignored.
 
@@ -17,9 +18,10 @@ using Trials = std::map<std::size_t, UnitResult>;  ///< by index of the unit
 
 class Store {
  public:
-  /// Makes the directory and writes the plan, or goes on with the one that is there. Throws
-  /// CliError: kRefused when it holds another experiment (the difference is named) or another
-  /// program works in it, kIo.
+  /// Makes the directory and writes the plan, or goes on with the one that is there, also with more
+  /// seeds than before (but not in shards, whose parts those would change). Throws CliError:
+  /// kRefused when it holds another experiment (the difference is named) or another program works
+  /// in it, kIo.
   Store(std::filesystem::path directory, const Plan& plan);
   ~Store();
   Store(const Store&) = delete;
@@ -32,14 +34,16 @@ class Store {
 
  private:
   std::filesystem::path directory_;
+  std::int64_t seeds_ = 0;
   int lock_ = -1, file_ = -1;
   Trials trials_;
 };
 
 /// The plan of a directory. Throws CliError(kNotFound, kIo).
 Plan ReadPlan(const std::filesystem::path& directory);
-/// Its finished units; none when it has no trials. Throws CliError(kIo).
-Trials ReadTrials(const std::filesystem::path& directory);
+/// Its finished units by their place in `plan`, which is its own; none when it has no trials.
+/// Throws CliError(kIo).
+Trials ReadTrials(const std::filesystem::path& directory, const Plan& plan);
 /// Replaces a file as a whole. Throws CliError(kIo).
 void WriteFile(const std::filesystem::path& path, const std::string& text);
 

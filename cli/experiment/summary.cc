@@ -6,6 +6,8 @@
 
 #include "cli/client/errors.h"
 #include "cli/client/program.h"
+#include "cli/experiment/comparison.h"
+#include "cli/experiment/paired.h"
 #include "cli/experiment/statistics.h"
 
 namespace regrasp::cli {
@@ -52,6 +54,9 @@ Json Quantiles(std::vector<double> values) {
         std::pair{"max", 1.0}})
     json[name] = Quantile(values, share);
   json["mean"] = sum / static_cast<double>(values.size());
+  json["sd"] = StandardDeviation(values);
+  if (const auto interval = MedianInterval(values))
+    json.update({{"median_low", interval->low}, {"median_high", interval->high}});
   return json;
 }
 
@@ -95,11 +100,6 @@ void Draw(const fs::path& summary, const fs::path& picture) {
   if (WaitForEnd(Start({program, in, out})) != 0)
     throw CliError(kIo, fmt::format("{} could not draw {}", program, out),
                    fmt::format("{} {} {}", program, in, out));
-}
-
-std::string Share(const Json& count, int n) {
-  return fmt::format("{}/{} ({:.0f}-{:.0f} %)", count.at("k").get<int>(), n,
-                     100 * count.at("low").get<double>(), 100 * count.at("high").get<double>());
 }
 
 }  // namespace
@@ -161,48 +161,10 @@ Json Summary(const Plan& plan, const Trials& trials) {
   };
   if (plan.cases.empty()) add_case(Json::object());
   for (const Case& c : plan.cases) add_case({{"case", c.name}});
-  return {{"experiment", ToJson(plan)}, {"trials", n}, {"groups", groups}};
-}
-
-std::string SummaryTable(const Output& out, const Json& summary) {
-  const Json& plan = summary.at("experiment");
-  const bool rotation = plan.at("experiment") == "rotation";
-  const bool map = At(plan, "rays").is_number() && plan.at("rays").get<int>() > 0;
-  const bool cases = plan.contains("cases");
-  std::vector<std::string> titles = {"noise"};
-  if (cases) titles.insert(titles.begin(), "case");
-  if (rotation)
-    titles.insert(titles.end(), {"axis", "completed (95 %)", ">deg/min", ">offset mm", ">dropped"});
-  else
-    titles.insert(titles.end(), {"estimator", "finger", std::string(out.Phi()) + " rose (95 %)"});
-  if (map) titles.insert(titles.end(), {"within 5 % of best (95 %)", ">share of best"});
-  if (!rotation) titles.insert(titles.end(), {">gain", ">dropped", ">refused"});
-  Table table(titles);
-  for (const auto& group : summary.at("groups")) {
-    const int n = group.at("n");
-    const Json &counts = group.at("counts"), &quantiles = group.at("quantiles");
-    const auto number = [&counts](const char* name) {
-      return counts.contains(name) ? Plain(counts[name].at("k")) : "0";
-    };
-    std::vector<std::string> cells = {group.at("noise")};
-    if (cases) cells.insert(cells.begin(), group.at("case"));
-    if (rotation) {
-      cells.insert(cells.end(), {group.at("axis_W"), Share(counts.at("completed"), n),
-                                 Fixed(At(quantiles.at("rate_deg_min"), "median"), 0),
-                                 Fixed(At(quantiles.at("max_position_error_m"), "max"), 2, 1e3),
-                                 number("dropped")});
-    } else {
-      cells.insert(cells.end(),
-                   {group.at("estimator"), group.at("finger"), Share(counts.at("rose"), n)});
-      if (map)
-        cells.insert(cells.end(), {Share(counts.at("near_best"), n),
-                                   Fixed(At(quantiles.at("share_of_best"), "median"), 3)});
-      cells.insert(cells.end(), {Fixed(At(quantiles.at("phi_true_gain"), "median"), 1, 100) + " %",
-                                 number("dropped"), number("refused")});
-    }
-    table.Row(cells);
-  }
-  return table.Text(out);
+  Json summary = {{"experiment", ToJson(plan)}, {"trials", n}, {"groups", groups}};
+  if (Json comparisons = Comparisons(plan, trials); !comparisons.empty())
+    summary["comparisons"] = std::move(comparisons);
+  return summary;
 }
 
 Json WriteResults(const Plan& plan, const Trials& trials, const fs::path& directory) {

@@ -56,26 +56,32 @@ Json Head(const Plan& plan, const Unit& unit) {
   return {{"case", plan.cases.at(unit.which).name}};
 }
 
+/// What it says where the object never was in the hand.
+std::string WithoutGrasp(const Json& status) {
+  return Plain(At(status, "state")) == "faulted" ? "fault" : "not_grasped";
+}
+
 Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
              const std::string& estimator, const std::optional<PhiMap>& map) {
+  daemon->LeaveFault();
   daemon->Call("noise.set", {{"preset", unit.noise}});
   const Json grasp = daemon->Grasp(unit.seed);
   Json status = daemon->Call("status");
   Json row = Head(plan, unit);
   row.update({{"finger", unit.subject},
-              {"criterion", plan.criterion},
+              {"criterion", plan.CriterionOf(unit.which)},
               {"estimator", estimator},
               {"noise", unit.noise},
               {"object", At(status, "object")},
               {"seed", unit.seed},
-              {"outcome", "not_grasped"},
+              {"outcome", WithoutGrasp(status)},
               {"error", At(grasp, "error")}});
   Json record, moved;
   if (Done(grasp)) {
     const Json before = ObjectPlace(daemon);
     record = daemon->Run("explore",
                          {{"finger", unit.subject},
-                          {"criterion", plan.criterion},
+                          {"criterion", plan.CriterionOf(unit.which)},
                           {"estimator", estimator},
                           {"seed", unit.seed}},
                          kExploreChunk, kExploreLimit);
@@ -85,7 +91,8 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
     row["error"] = At(record, "error");
     moved = Distance(ObjectPlace(daemon), before);
   }
-  const bool slid = row["outcome"] != "not_grasped" && row["outcome"] != "refused";
+  const bool slid = row["outcome"] != "refused" && At(record, "phi_true_initial").is_number() &&
+                    At(record, "phi_true_final").is_number();
   for (const char* key : {"reason", "converged", "cycles", "phi_initial", "phi_final",
                           "phi_true_initial", "phi_true_final"})
     row[key] = slid ? At(record, key) : Json();
@@ -113,6 +120,7 @@ void Push(SteppedDaemon* daemon, const Eigen::Vector3d& force_W) {
 }
 
 Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
+  daemon->LeaveFault();
   daemon->Call("noise.set", {{"preset", unit.noise}});
   const Json grasp = daemon->Grasp(unit.seed);
   Json status = daemon->Call("status");
@@ -123,7 +131,7 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
               {"noise", unit.noise},
               {"object", At(status, "object")},
               {"seed", unit.seed},
-              {"outcome", "not_grasped"},
+              {"outcome", WithoutGrasp(status)},
               {"error", At(grasp, "error")}});
   Json record;
   GaitEvents events(daemon);
@@ -181,7 +189,8 @@ UnitResult RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
   UnitResult result;
   std::optional<PhiMap> map;
   if (plan.rays > 0) {
-    map = MapPhi(daemon, unit.noise, unit.seed, unit.subject, plan.criterion, plan.rays);
+    map = MapPhi(daemon, unit.noise, unit.seed, unit.subject, plan.CriterionOf(unit.which),
+                 plan.rays);
     result.map = map->samples;
   }
   for (const auto& estimator : plan.estimators)

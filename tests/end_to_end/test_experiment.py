@@ -4,6 +4,7 @@ import csv
 import json
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import unittest
@@ -13,6 +14,47 @@ from harness import HANG_S, REGRASP, SOURCE, Case, Terminal, environment
 # Two fingers and two seeds, no map: four trials of about half a second.
 SMALL = ["--finger", "first,ring", "-n", "2", "--seed", "7", "--rays", "0", "--models-dir", SOURCE / "models"]
 FILES = ["trials.csv", "summary.json"]
+
+
+# A `regraspd` that hands everything to the real one, but says that the run of seed 6 has faulted once it explores.
+FAULTY = r"""#!/usr/bin/python3
+import json, os, socket, subprocess, sys, time
+path = sys.argv[sys.argv.index("--socket") + 1]
+arguments = [path + ".real" if word == path else word for word in sys.argv[1:]]
+daemon = subprocess.Popen(["REAL", *arguments])
+listener = socket.socket(socket.AF_UNIX)
+while not os.path.exists(path + ".real") and daemon.poll() is None:
+    time.sleep(0.01)
+listener.bind(path)
+listener.listen()
+seed, faulted = None, False
+while daemon.poll() is None:
+    client, _ = listener.accept()
+    real = socket.socket(socket.AF_UNIX)
+    real.connect(path + ".real")
+    answers = real.makefile()
+    for line in client.makefile():
+        request = json.loads(line)
+        method = request["method"]
+        if method == "reset":
+            seed, faulted = request.get("params", {}).get("seed"), False
+        if method == "explore" and seed == 6:
+            faulted = True
+        if faulted and method not in ("status", "events", "truth", "pause", "param.get", "noise.get"):
+            answer = {"jsonrpc": "2.0", "id": request["id"], "error": {"code": -32006, "message": "the simulation has stopped on a fault"}}
+        else:
+            real.sendall(line.encode())
+            answer = json.loads(answers.readline())
+            if faulted and method == "status":
+                answer["result"]["state"] = "faulted"
+        client.sendall((json.dumps(answer) + "\n").encode())
+        if method == "shutdown":
+            client.close()
+            os.unlink(path)
+            daemon.wait()
+            sys.exit()
+    real.close()
+"""
 
 
 class ExperimentCase(Case):
@@ -158,6 +200,63 @@ class Results(ExperimentCase):
                          [("off", "least_squares"), ("off", "secant"), ("paper", "least_squares"), ("paper", "secant")])
 
 
+class Pairs(ExperimentCase):
+    """The same seeds under several settings."""
+
+    ONE = ["exploration", "--finger", "ring", "--seed", "5", "--rays", "0", "--workers", "1", "--models-dir", SOURCE / "models"]
+
+    def test_an_experiment_grows(self):
+        both = ["--estimator", "least_squares,secant"]
+        self.run_experiment(*self.ONE, *both, "-n", "3", "-o", self.dir / "at once")
+        self.run_experiment(*self.ONE, *both, "-n", "2", "-o", self.dir / "grown")
+        kept = (self.dir / "grown" / "trials.jsonl").read_bytes()
+        self.assertIn("2 of 3 are there already", self.run_experiment(*self.ONE, *both, "-n", "3", "-o", self.dir / "grown").stderr)
+        self.assertTrue((self.dir / "grown" / "trials.jsonl").read_bytes().startswith(kept))
+        self.assert_same_results("at once", "grown")
+        self.assertIn("seeds was 3, is 2", self.refused_experiment(5, *self.ONE, *both, "-n", "2", "-o", self.dir / "grown"))
+
+        # The differences are those of the rows, paired by seed.
+        (comparison,) = self.summary("grown")["comparisons"]
+        self.assertEqual((comparison["what"], comparison["base"], comparison["other"], comparison["pairs"]), ("estimator", "least_squares", "secant", 3))
+        final = {(row["estimator"], row["seed"]): float(row["phi_true_final"]) for row in self.rows("grown")}
+        differences = [final["secant", seed] - final["least_squares", seed] for seed in ("5", "6", "7")]
+        measure = comparison["measures"]["phi_true_final"]
+        self.assertAlmostEqual(measure["difference"], sum(differences) / 3, delta=1e-12)
+        self.assertGreaterEqual(measure["low"], min(differences) - 1e-12)
+        self.assertLessEqual(measure["high"], max(differences) + 1e-12)
+        # Of three signs alike one in four says as much; otherwise p is larger.
+        self.assertGreaterEqual(measure["p"], 0.25)
+        # Tables as a paper takes them, of a finished directory.
+        latex = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "latex", "-o", self.dir / "grown").stdout
+        self.assertEqual(latex.count("\\begin{tabular}"), latex.count("\\bottomrule"))
+        self.assertIn("least\\_squares", latex)
+        advice = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "markdown", "--precision", "0.05", "-o", self.dir / "grown").stdout
+        self.assertIn("| secant | least_squares |", advice)
+        self.assertIn("n for ±0.05", advice)
+
+    def test_a_sweep_makes_a_case_of_each_value(self):
+        self.run_experiment(*self.ONE, "-n", "1", "--set", "object.friction=0.7,0.8", "--set", "gravity=0,0,-9.81", "-o", self.dir / "sweep")
+        self.assertEqual([row["case"] for row in self.rows("sweep")], ["object.friction=0.7", "object.friction=0.8"])
+        (comparison,) = self.summary("sweep")["comparisons"]
+        self.assertEqual((comparison["base"], comparison["other"]), ("object.friction=0.7", "object.friction=0.8"))
+        plan = json.loads((self.dir / "sweep" / "experiment.json").read_text())
+        self.assertEqual(plan["parameters"]["object.friction=0.7"]["object.friction"], 0.7)
+        words = shlex.split(self.rows("sweep")[0]["command"])
+        words[words.index("-o") + 1] = self.dir / "single"
+        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.assertEqual(self.rows("single"), self.rows("sweep")[:1])
+        self.refused_experiment(2, *self.ONE, "--set", "object.friction=0.7,0.7", "-o", self.dir / "none")
+
+    def test_a_zoo_pairs_gaits_on_every_object(self):
+        words = ["zoo", "--objects", "egg,sphere", "-n", "1", "--turns", "0.05", "--models-dir", SOURCE / "models"]
+        self.run_experiment(*words, "-o", self.dir / "zoo")
+        self.assertEqual([row["case"] for row in self.rows("zoo")], ["egg, returning", "egg, exploring", "sphere, returning", "sphere, exploring"])
+        comparisons = self.summary("zoo")["comparisons"]
+        self.assertEqual([(c.get("case"), c["base"], c["other"], c["pairs"]) for c in comparisons],
+                         [(None, "egg, returning", "egg, exploring", 1), (None, "sphere, returning", "sphere, exploring", 1), ("all", "returning", "exploring", 2)])
+        self.assertIn("'unicorn' is none of", self.refused_experiment(2, "zoo", "--objects", "unicorn", "-o", self.dir / "none"))
+
+
 class Cases(ExperimentCase):
     TURN = ["rotation", "--angle", "15", "-n", "1", "--models-dir", SOURCE / "models"]
     CASES = ["--case", "as it is:", "--case", "egg, pushed: object=egg push=0.5 object.mass_kg=0.05", "--case", "tilt=45"]
@@ -218,6 +317,57 @@ class Paper(ExperimentCase):
         self.assertIn(f"{rose}/1", next(c for c in claims if "Alg. 1" in c[0])[1])
 
 
+class Hermetic(ExperimentCase):
+    """Only the experiment's own options decide; whatever else could is recorded, compared and refused by name."""
+
+    ONE = ["exploration", "--finger", "ring", "-n", "2", "--seed", "5", "--rays", "0", "--workers", "1"]
+
+    def test_nothing_of_the_user_reaches_a_trial(self):
+        self.run_experiment(*self.ONE, "-o", self.dir / "plain")
+        (self.dir / "regrasp").mkdir()
+        (self.dir / "regrasp" / "regraspd.toml").write_text("[parameters]\nobject.friction = 0.3\n")
+        file = str(self.dir / "regrasp" / "regraspd.toml")
+        for name, env in [("variable", {"REGRASP_CONFIG": file, "REGRASP_STEPPER": "exact", "REGRASP_NOISE": "off"}), ("home", {"XDG_CONFIG_HOME": str(self.dir)})]:
+            with self.subTest(name):
+                done = self.regrasp("experiment", *self.ONE, "-o", self.dir / name, env=environment(**env))
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assert_same_results("plain", name)
+                self.assertEqual((self.dir / name / "experiment.json").read_bytes(), (self.dir / "plain" / "experiment.json").read_bytes())
+
+    def test_what_decides_is_recorded_and_a_difference_refused_by_name(self):
+        models = self.dir / "models"
+        shutil.copytree(SOURCE / "models", models)
+        one = [*self.ONE, "--models-dir", models, "--set", "object.mass_kg=0.09", "-o", self.dir / "one"]
+        self.run_experiment(*one, "--shard", "1/2")
+        plan = json.loads((self.dir / "one" / "experiment.json").read_text())
+        self.assertEqual((plan["stepper"], plan["parameters"]), ("fast", {"object.mass_kg": 0.09}))
+        self.assertRegex(plan["models"]["object"], r"^sphere [0-9a-f]{16}$")
+        self.assertEqual(sorted(plan["models"]), ["hand", "object", "scenario"])
+        self.assertIn('stepper was "fast", is "exact"', self.refused_experiment(5, *one, "--shard", "1/2", "--stepper", "exact"))
+        sphere = models / "objects" / "sphere.urdf"
+        sphere.write_text("<!-- the same sphere -->" + sphere.read_text())
+        self.run_experiment(*one, "--shard", "1/2")
+        sphere.write_text(sphere.read_text().replace("0.025", "0.0251"))
+        self.assertRegex(self.refused_experiment(5, *one, "--shard", "1/2"), r'models.object was "sphere \w+", is "sphere \w+"')
+        # Nor are shards joined that were made with another one.
+        self.run_experiment(*one[:-1], self.dir / "two", "--shard", "2/2")
+        self.assertIn("models.object was", self.refused_experiment(5, "merge", self.dir / "one", self.dir / "two", "-o", self.dir / "all"))
+
+    def test_a_faulted_trial_is_booked_and_the_others_go_on(self):
+        # The real programs, but the simulation of seed 6 faults while it explores.
+        programs = self.dir / "bin"
+        programs.mkdir()
+        shutil.copy(REGRASP, programs)
+        (programs / "regrasp-plot-experiment").symlink_to(REGRASP.parent / "regrasp-plot-experiment")
+        (programs / "regraspd").write_text(FAULTY.replace("REAL", str(REGRASP.parent / "regraspd")))
+        (programs / "regraspd").chmod(0o755)
+        words = ["experiment", *self.ONE[:3], "-n", "3", *self.ONE[5:], "--models-dir", SOURCE / "models", "-o", self.dir / "fault"]
+        done = self.regrasp(*words, binary=programs / "regrasp")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([(row["seed"], row["outcome"]) for row in self.rows("fault")], [("5", "done"), ("6", "fault"), ("7", "done")])
+        self.assertEqual(self.summary("fault")["groups"][0]["counts"]["fault"]["k"], 1)
+
+
 class Refusals(ExperimentCase):
     def test_another_configuration_in_the_same_directory_is_refused_by_name(self):
         self.explore("first", "--shard", "1/4")
@@ -233,6 +383,7 @@ class Refusals(ExperimentCase):
     def test_bad_arguments_make_no_directory(self):
         out = ["--models-dir", SOURCE / "models", "-o", self.dir / "none"]
         for words, part in [(["--finger", "rong"], "'rong' is none of"), (["--shard", "3/2"], "--shard '3/2'"), (["--set", "exploration.epsilon"], "NAME=VALUE"),
+                            (["--set", "gait.hop=0", "--set", "gait.hop=1"], "gait.hop is given twice"), (["--case", "a: gait.hop=0 gait.hop=1"], "gait.hop is given twice"),
                             (["--noise", "loud"], "'loud' is none of"), (["--rays", "-1"], "--rays"),
                             (["--estimator", "guess"], "'guess' is none of"), (["-n", "0"], "--seeds")]:
             with self.subTest(words):

@@ -130,35 +130,6 @@ TEST(SavedState, GoesOnToTheSameBits) {
   }
 }
 
-// The exact step keeps its state in ODE's bodies and in the joint by which the stand-in holds.
-TEST(SavedState, OfTheExactStepGoesOnToo) {
-  SessionConfig config = Config();
-  config.world.stepper = Stepper::kExact;
-  SessionRun run(config);
-  std::map<std::int64_t, std::string> states;
-  std::vector<std::uint64_t> hashes;
-  run.Give(CommandType::kGrasp);
-  for (std::int64_t tick = 0; tick < 3200; ++tick) {
-    hashes.push_back(run.session.StateHash());
-    if (tick == 0 || tick == 1 || tick == 800 || tick == 2900)
-      states[tick] = SaveState(run.session);
-    run.Tick();
-  }
-  ASSERT_FALSE(run.session.world().stand_in());  // let go on the way
-  for (const auto& [from, state] : states) {
-    SessionRun other(config);
-    other.Ticks(5);
-    LoadState(state, &other.session);
-    for (std::int64_t tick = from; tick < from + 300; ++tick) {
-      ASSERT_EQ(other.session.StateHash(), hashes[tick]) << tick << " from " << from;
-      other.Tick();
-    }
-  }
-  config.world.stepper = Stepper::kFast;
-  Session fast(config);
-  EXPECT_THROW(LoadState(states[800], &fast), StateError);
-}
-
 TEST(SavedState, IsOfAFewKilobytes) {
   for (const auto& [tick, state] : TheRun().states) EXPECT_LT(state.size(), 64u << 10) << tick;
 }
