@@ -37,9 +37,10 @@ class Methods:
 
     def contacts(self) -> dict:
         """What the controller senses at each fingertip.
-        Returns tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, fingers:
-            {NAME: {role, in_contact, p_WC_m, normal_W, force_n, force_command_W_n}}; p_WC_m and normal_W are null
-            without contact.
+        Returns tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, normals:
+            outward (out of the object), friction, weight_n, max_force_n (what the controller reckons with),
+            fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, force_command_W_n}}; p_WC_m and normal_W
+            are null without contact; evaluate takes this answer as it is.
         """
         return self._ask("contacts", {})
 
@@ -244,7 +245,8 @@ class Methods:
 
     def quality(self) -> dict:
         """Quality of the grasp.
-        Returns tick, time_s, criterion, stability, threshold, load_margin_n, measures, fingers: {NAME:
+        Returns tick, time_s, criterion, stability, threshold, load_margin_n, measures, torque_scale_m (mean
+            distance of the contacts from the object's centre; torques are divided by it), fingers: {NAME:
             {manipulability, load_margin_without_n, joint_limit_margin_rad}}.
         """
         return self._ask("quality", {})
