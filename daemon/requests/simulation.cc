@@ -217,14 +217,6 @@ Json ResetAnswer(const Service& service) {
   return {{"seed", service.accepted.seed}, {"object", service.accepted.object->name}};
 }
 
-/// Answers when the control thread has taken request `barrier`.
-void AnswerAfter(Service& service, std::uint64_t barrier, const Json& answer, const Done& done) {
-  constexpr double kLook_s = 0.002;
-  if (service.control().acknowledged() >= barrier) return done(answer, nullptr);
-  service.host().After(
-      kLook_s, [&service, barrier, answer, done] { AnswerAfter(service, barrier, answer, done); });
-}
-
 /// The file is read by the worker thread: a mesh may take seconds.
 void LoadAndReset(Service& service, std::uint64_t seed, const std::string& name, const Done& done) {
   struct Loaded {
@@ -244,8 +236,10 @@ void LoadAndReset(Service& service, std::uint64_t seed, const std::string& name,
     if (!loaded->object) return done({}, &loaded->error);
     try {
       service.CheckNotRestoring();
-      const std::uint64_t barrier = PostReset(service, seed, loaded->object);
-      AnswerAfter(service, barrier, ResetAnswer(service), done);
+      PostReset(service, seed, loaded->object);
+      // Answered when the reset has been taken and what follows it is known.
+      service.Mark(
+          [done, answer = ResetAnswer(service)](const JournalNews&) { done(answer, nullptr); });
     } catch (const RpcException& e) {
       done({}, &e.error());
     }
