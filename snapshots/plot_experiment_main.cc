@@ -54,8 +54,7 @@ std::string AxisName(const std::string& axis) {
 /// Explorations at several levels of noise.
 bool IsSweep(const Json& summary) {
   const Json& plan = summary.at("experiment");
-  return !plan.contains("axes") && plan.at("noise").size() > 1 &&
-         !plan.contains("cases");
+  return !plan.contains("axes") && plan.at("noise").size() > 1 && !plan.contains("cases");
 }
 
 ExperimentPicture PictureOf(const Json& summary) {

@@ -106,6 +106,15 @@ std::string MoveVerdict(const Json& r) {
   return "ended: " + end;
 }
 
+/// Throws CliError(kRefused) when the simulation is paused.
+void CheckNotPaused(Context& context, std::int64_t id) {
+  const Json status = context.client().Call("status", Json::object());
+  if (At(status, "paused") != true) return;
+  throw CliError(kRefused,
+                 fmt::format("the simulation is paused: job {} waits for it to go on", id),
+                 "regrasp resume, or regrasp step --until-job-ends --wait");
+}
+
 }  // namespace
 
 ExitCode JobExit(const Json& record) {
@@ -155,7 +164,8 @@ void PrintJob(Output& out, const Json& record) {
   }
 }
 
-Json WaitForJob(Context& context, std::int64_t id) {
+Json WaitForJob(Context& context, std::int64_t id, Standstill standstill) {
+  constexpr double kFirstSlice_s = 0.25;
   const Interruptible interruptible;
   ProgressLine line(context.out().human() && !context.options().quiet &&
                     ::isatty(STDERR_FILENO) == 1);
@@ -164,7 +174,8 @@ Json WaitForJob(Context& context, std::int64_t id) {
   try {
     while (true) {
       const double left = std::chrono::duration<double>(deadline - Clock::now()).count();
-      const double slice = std::clamp(left, 0.0, line.on() ? 0.1 : 60.0);
+      const bool first = standstill == Standstill::kRefuse;
+      const double slice = std::clamp(left, 0.0, first ? kFirstSlice_s : line.on() ? 0.1 : 60.0);
       try {
         return context.client().Call("job.wait", {{"id", id}, {"timeout_s", slice}}, slice + 10);
       } catch (const CliError& error) {
@@ -175,6 +186,8 @@ Json WaitForJob(Context& context, std::int64_t id) {
                                      *context.options().timeout_s),
                          how);
         }
+        if (first) CheckNotPaused(context, id);
+        standstill = Standstill::kWait;
       }
       if (line.on())
         line.Show(ProgressText(context, context.client().Call("job.get", {{"id", id}})));
@@ -185,21 +198,8 @@ Json WaitForJob(Context& context, std::int64_t id) {
   }
 }
 
-void CheckNotPaused(Context& context, const std::string& what, const std::string& next) {
-  const Json status = context.client().Call("status", Json::object());
-  if (At(status, "paused") != true) return;
-  throw CliError(kRefused, fmt::format("the simulation is paused: {} would wait for ever", what),
-                 next);
-}
-
 ExitCode StartJob(Context& context, const Invocation& invocation) {
   const bool wait = invocation.Has("wait");
-  const std::string& words = invocation.command->words;
-  if (wait && words != "step")
-    CheckNotPaused(context, words + " --wait",
-                   fmt::format("regrasp resume, or: regrasp {} ... without --wait, then regrasp "
-                               "step --until-job-ends --wait",
-                               words));
   const Json answer = context.Call(invocation);
   const std::int64_t id = answer.at("job");
   if (!wait) {
@@ -209,7 +209,8 @@ ExitCode StartJob(Context& context, const Invocation& invocation) {
     });
     return kOk;
   }
-  const Json record = WaitForJob(context, id);
+  const bool step = invocation.command->words == "step";
+  const Json record = WaitForJob(context, id, step ? Standstill::kWait : Standstill::kRefuse);
   context.Print(record, [&] { PrintJob(context.out(), record); });
   return JobExit(record);
 }

@@ -78,11 +78,12 @@ class Paused(DaemonCase):
     ARGUMENTS = ["--speed", "max", "--seed", "1", "--paused"]
 
     def test_waiting_for_a_paused_simulation_is_refused_at_once(self):
-        for words in (["grasp", "--wait"], ["rotate", "--angle", "90", "--wait"]):
-            cause, hint = self.refused(5, *words)
-            self.assertIn("the simulation is paused", cause)
-            self.assertIn("regrasp resume", hint)
-        self.assertEqual(self.json("job", "list")["jobs"], [])  # not even begun
+        cause, hint = self.refused(5, "grasp", "--wait")
+        self.assertIn("the simulation is paused: job 1 waits", cause)
+        self.assertIn("regrasp resume", hint)
+        self.assertEqual(self.json("job", "show", "1")["state"], "queued")
+        self.expect(0, "step", "--until-job-ends", "--wait")
+        self.assertEqual(self.json("job", "show", "1")["state"], "done")
 
     def test_step_until_the_job_ends(self):
         job = self.json("grasp")["job"]
