@@ -106,8 +106,10 @@ std::string MoveVerdict(const Json& r) {
   return "ended: " + end;
 }
 
-/// Throws CliError(kRefused) when the simulation is paused.
+/// Throws CliError(kRefused) when the job has not begun because the simulation is paused.
 void CheckNotPaused(Context& context, std::int64_t id) {
+  const Json job = context.client().Call("job.get", {{"id", id}});
+  if (At(job, "state") != "queued") return;
   const Json status = context.client().Call("status", Json::object());
   if (At(status, "paused") != true) return;
   throw CliError(kRefused,
