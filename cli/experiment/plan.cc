@@ -79,6 +79,7 @@ void AddDifference(const std::string& key, const Json& was, const Json& is, std:
 /// Throws CliError(kUsage) when a parameter is given twice.
 void CheckGivenOnce(const Setting& setting, const std::string& where) {
   std::set<std::string> names;
+  if (setting.tilt_deg) names.insert("gravity");  // a tilt is one
   for (const auto& [name, value] : setting.set)
     if (!names.insert(name).second)
       throw CliError(kUsage, fmt::format("{}: {} is given twice", where, name),

@@ -77,6 +77,13 @@ class Methods:
         """
         return self._job("grasp", {})
 
+    def identity(self) -> dict:
+        """What decides the results, besides seed and commands: equal answers, equal bits.
+        Returns build; stepper; models: {scenario, hand, object}, each {name, hash of the model as it was read};
+            parameters: {NAME: value} of those that differ from their defaults.
+        """
+        return self._ask("identity", {})
+
     def job_cancel(self, id: int) -> dict:
         """End a job.
         id: number of the job; 1 to 9007199254740992.
@@ -106,7 +113,7 @@ class Methods:
         return self._ask("job.wait", {"id": id, "timeout_s": timeout_s})
 
     def joints(self) -> dict:
-        """Joint angles, rates and torques.
+        """Joint angles, torques and limits.
         Returns tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}].
         """
         return self._ask("joints", {})
@@ -321,18 +328,20 @@ class Methods:
 
     def status(self) -> dict:
         """State of daemon and simulation.
-        Returns version, protocol, state, paused, tick, time_s, state_hash, real_time_factor, speed, tick_p99_s,
-            seed, hand, object, job, gait: {active, phase, finger, target_angle_rad, achieved_angle_rad, cycles,
-            regrasps}, incident (the last drop: tick, cause, record, picture; or null), noise, clients, ....
+        Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
+            time_s, state_hash, real_time_factor, speed, tick_p99_s, seed, hand, object, job, gait: {active, phase,
+            finger, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop: tick, cause,
+            record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})
 
-    def step(self, ticks: int | None = None) -> Job:
-        """Advance a paused simulation.
+    def step(self, ticks: int | None = None, until_job_ends: bool | None = None) -> Job:
+        """Advance a simulation that is paused, or stands still in lockstep.
         ticks: how many ticks; 1 to 1000000000; left out: 1.
+        until_job_ends: no further than to the end of the job that is running or waits to begin; left out: false.
         Returns a Job.
         """
-        return self._job("step", {"ticks": ticks})
+        return self._job("step", {"ticks": ticks, "until_job_ends": until_job_ends})
 
     def stop(self) -> dict:
         """End the current job and keep holding.
