@@ -103,7 +103,7 @@ double WallDepth(const HandModel& hand, const ExplorationParameters& parameters,
   f.p_WC = p_WC;
   f.normal_W = normal_W;
   f.J = PointJacobian(hand, estimate.kinematics, finger, p_WC);
-  FixedVector<Wall, 8> walls;
+  Walls walls;
   FindWalls(hand, estimate, finger, parameters, &walls);
   double depth = 0;
   for (const Wall& wall : walls) depth = std::max(depth, wall.depth);

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 
+#include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
 #include "snapshots/snapshots.h"
@@ -54,10 +54,8 @@ int GaitStateOf(const Frame& frame) {
 /// The paper's name of the state in which a finger regrasps: S_T thumb, S_F first, ...
 BandLook LookOfGaitState(const HandModel& hand, int value) {
   if (value == kTurning) return {"turn", Tint(kInk, 0.9)};
-  const std::string name = FingerName(hand, value);
-  const char initial = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
-  return {fmt::format("S_{}", initial), Tint(LookOfFinger(value).colour, 0.42),
-          std::string(1, initial)};
+  const std::string state(GaitStateNameOf(hand, value).view());
+  return {state, Tint(LookOfFinger(value).colour, 0.42), state.substr(2, 1)};
 }
 
 /// The stability that the exploring finger maximises: in S_F that of the grasp without the thumb.
@@ -118,7 +116,7 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
       return f.gait.active ? f.gait.*field * kDegrees : kNoValue;
     });
   };
-  const auto target = angle(&GaitFrame::target_angle_rad),
+  const auto target = angle(&GaitFrame::reference_angle_rad),
              achieved = angle(&GaitFrame::achieved_angle_rad);
   const auto phi =
       Column(frames, [](const Frame& f) { return TrueManipulability(f, ExploringFinger(f)); });

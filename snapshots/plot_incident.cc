@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
 #include "snapshots/snapshots.h"
@@ -234,7 +235,7 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
     DrawStrip(&canvas, panels[0], strips + 30, 24, "gait", bands(GaitStateOf), [&](int value) {
       if (value == kTurning) return BandLook{"all hold", Tint(kInk, 0.9)};
       return BandLook{FingerName(hand, value) + " regrasps", Tint(LookOfFinger(value).colour, 0.42),
-                      "S_" + LetterOf(hand, value)};
+                      std::string(GaitStateNameOf(hand, value).view())};
     });
   for (int f = 0; f < n; ++f)
     DrawStrip(&canvas, panels[0], fingers_top + f * (strip + 4), strip, FingerName(hand, f),

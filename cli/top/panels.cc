@@ -134,7 +134,7 @@ void DrawObject(Screen* screen, const Box& box, const DashboardModel& model) {
   const bool turning = At(gait, "active") == true;
   std::string target, achieved;
   if (turning) {
-    target = fmt::format("target {}°", Fixed(At(gait, "target_angle_rad"), 1, kDegrees));
+    target = fmt::format("target {}°", Fixed(At(gait, "reference_angle_rad"), 1, kDegrees));
     achieved = fmt::format("reached {}°", Fixed(At(gait, "achieved_angle_rad"), 1, kDegrees));
   } else if (At(job, "angle_rad").is_number()) {
     achieved = fmt::format("turned {}°", Fixed(At(job, "angle_rad"), 1, kDegrees));

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "core/hand/damped_inverse.h"
+
 namespace regrasp {
 namespace {
 
@@ -12,8 +14,7 @@ constexpr double kSlowSlide = 0.001;
 /// Damped pseudo-inverse J⁺ = Jᵀ (J Jᵀ + lambda² I)⁻¹, n x 3.
 using FingerPinv = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxFingerJoints, 3>;
 FingerPinv DampedPinv(const FingerJacobian& J, double lambda) {
-  const Matrix3d JJt = J * J.transpose() + lambda * lambda * Matrix3d::Identity();
-  const Matrix3d inverse = JJt.inverse();
+  const Matrix3d inverse = DampedInverse(J, lambda * lambda);
   return J.transpose() * inverse;
 }
 

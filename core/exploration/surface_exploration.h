@@ -32,6 +32,7 @@
 #include <cstdint>
 
 #include "core/common/fixed_vector.h"
+#include "core/common/limits.h"
 #include "core/common/random.h"
 #include "core/exploration/gradient_estimator.h"
 
@@ -51,6 +52,12 @@ struct Wall {
   }
 };
 
+/// Room for every wall that a finger can have at once: two limits per joint, the end of its round
+/// tip, two links against two of every other finger, and one for who bounds the search from
+/// outside.
+inline constexpr std::size_t kMaxWalls = 2 * kMaxFingerJoints + 1 + 4 * (kMaxFingers - 1) + 1;
+using Walls = FixedVector<Wall, kMaxWalls>;
+
 class SurfaceExploration {
  public:
   enum class Status : std::uint8_t { kRunning, kConverged, kMaxCycles };
@@ -60,7 +67,7 @@ class SurfaceExploration {
     Vector3d p_WC = Vector3d::Zero();       ///< sensed contact point [m]
     Vector3d normal_W = Vector3d::UnitZ();  ///< sensed outward object normal
     double phi = 0;                         ///< objective, of order 1
-    FixedVector<Wall, 8> walls;             ///< joint limits, other fingers
+    Walls walls;                            ///< joint limits, other fingers
   };
 
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.
@@ -111,7 +118,7 @@ class SurfaceExploration {
   int updates_ = 0;
   int small_updates_ = 0;  // consecutive, with the gradient below epsilon
   Vector3d p_WC_start_ = Vector3d::Zero(), p_WC_prev_ = Vector3d::Zero();
-  FixedVector<Wall, 8> walls_start_;
+  Walls walls_start_;
   double phi_prev_ = 0;
   Vector3d gradient_W_ = Vector3d::Zero();
   double gradient_norm_ = 0;

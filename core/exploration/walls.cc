@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/hand/damped_inverse.h"
+
 namespace regrasp {
 namespace {
 
@@ -11,8 +13,10 @@ struct Capsule {
   double radius = 0;
 };
 
-constexpr double kTouching = 1e-6;  // m: nearer axes have no direction between them
-constexpr double kLeastRate = 0.2;  // links that near each other more slowly are no wall
+constexpr double kDamping = 1e-6;    // m²: of J⁺ (1 mm)
+constexpr double kTouching = 1e-6;   // m: nearer axes have no direction between them
+constexpr double kLeastShare = 0.2;  // of a direction that is tangential: less is no wall
+constexpr double kLeastRate = 0.2;   // links that near each other more slowly are no wall
 
 bool CapsuleOf(const HandModel& hand, const Estimate& estimate, int link, Capsule* capsule) {
   for (const Shape& shape : hand.links[link].shapes) {
@@ -54,79 +58,107 @@ Closest BetweenSegments(const Capsule& one, const Capsule& two) {
 }
 
 /// `direction`: of contact motion, any length; `depth` [m] along it.
-void AddWall(const Vector3d& direction, double depth, const Vector3d& normal,
-             FixedVector<Wall, 8>* walls, bool must_leave = false) {
+void AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
+             bool must_leave = false) {
   const Vector3d tangent = TangentPart(direction, normal);
   const double share = tangent.norm() / direction.norm();
-  if (share > 0.2) walls->push_back({tangent.normalized(), depth / share, must_leave});
+  if (share > kLeastShare) walls->push_back({tangent.normalized(), depth / share, must_leave});
+}
+
+/// One finger among the others.
+struct Explorer {
+  const HandModel& hand;
+  const Estimate& estimate;
+  const ExplorationParameters& parameters;
+  int index;
+  const Finger& model;
+  const FingerEstimate& finger;
+  Matrix3d inverse;  // (J Jᵀ + damping)⁻¹
+
+  /// d q_k / d v, for the contact's velocity v.
+  Vector3d JointRate(std::size_t k) const {
+    return inverse * finger.J.col(static_cast<Eigen::Index>(k));
+  }
+  /// The link before this one on its way to the palm.
+  int Before(int link) const { return hand.joints[hand.links[link].parent_joint].parent_link; }
+};
+
+void AddJointLimits(const Explorer& e, Walls* walls) {
+  for (std::size_t k = 0; k < e.model.joints.size(); ++k) {
+    const Joint& joint = e.hand.joints[e.model.joints[k]];
+    const double q = e.estimate.q[e.model.joints[k]];
+    const Vector3d row = e.JointRate(k);
+    const double above = q - (joint.upper - e.parameters.limit_margin);
+    const double below = joint.lower + e.parameters.limit_margin - q;
+    if (above > 0) AddWall(row, above / row.norm(), e.finger.normal_W, walls);
+    if (below > 0) AddWall(-row, below / row.norm(), e.finger.normal_W, walls);
+  }
+}
+
+/// The contact must stay on the round end: on the side of the link it no longer follows the tip.
+/// facing = d . n is negative there (d: along the link, n: outward normal); its rate of change with
+/// the contact velocity v is (w x d) . n + d . v / (R + r), with w the link's angular velocity.
+void AddTipSide(const Explorer& e, Walls* walls) {
+  Capsule own;
+  if (!CapsuleOf(e.hand, e.estimate, e.model.tip_link, &own) || (own.b - own.a).norm() <= 1e-6)
+    return;
+  const Vector3d d = (own.b - own.a).normalized();
+  const Vector3d& n = e.finger.normal_W;
+  const double facing = d.dot(n);
+  if (facing <= e.parameters.least_facing) return;
+  Vector3d rate = d / (e.estimate.object_scale + own.radius);
+  for (std::size_t k = 0; k < e.model.joints.size(); ++k)
+    rate += AngularRate(e.hand, e.estimate.kinematics, e.model.joints[k], e.model.tip_link)
+                .cross(d)
+                .dot(n) *
+            e.JointRate(k);
+  constexpr bool kMustLeave = true;  // the finger would roll off over the side of its link
+  AddWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, walls, kMustLeave);
+}
+
+/// Between a link of this finger and another finger's.
+void AddLinks(const Explorer& e, int own_link, const Capsule& own, const Capsule& other,
+              Walls* walls) {
+  const Closest closest = BetweenSegments(own, other);
+  const Vector3d between = closest.on_two - closest.on_one;
+  const double distance = between.norm();
+  const double depth = own.radius + other.radius + e.parameters.clearance - distance;
+  if (depth <= 0 || distance < kTouching) return;
+  // How fast the links near each other, per contact velocity: the joints that move the own link,
+  // with q' = J⁺ v.
+  Vector3d rate = Vector3d::Zero();
+  for (std::size_t k = 0; k < e.model.joints.size(); ++k) {
+    const Vector3d v =
+        PointRate(e.hand, e.estimate.kinematics, e.model.joints[k], own_link, closest.on_one);
+    rate += v.dot(between) / distance * e.JointRate(k);
+  }
+  if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), e.finger.normal_W, walls);
+}
+
+void AddOtherFingers(const Explorer& e, Walls* walls) {
+  Capsule own, other;
+  for (int own_link : {e.model.tip_link, e.Before(e.model.tip_link)}) {
+    if (!CapsuleOf(e.hand, e.estimate, own_link, &own)) continue;
+    for (int i = 0; i < e.hand.num_fingers(); ++i) {
+      if (i == e.index) continue;
+      const int tip = e.hand.fingers[i].tip_link;
+      for (int link : {tip, e.Before(tip)})
+        if (CapsuleOf(e.hand, e.estimate, link, &other)) AddLinks(e, own_link, own, other, walls);
+    }
+  }
 }
 
 }  // namespace
 
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
-               const ExplorationParameters& parameters, FixedVector<Wall, 8>* walls) {
+               const ExplorationParameters& parameters, Walls* walls) {
   walls->clear();
   const FingerEstimate& f = estimate.fingers[finger];
-  const Finger& model = hand.fingers[finger];
-  const Matrix3d inverse =
-      (f.J * f.J.transpose() + 1e-6 * Matrix3d::Identity()).inverse();  // 1 mm damping
-  for (std::size_t k = 0; k < model.joints.size(); ++k) {
-    const Joint& joint = hand.joints[model.joints[k]];
-    const double q = estimate.q[model.joints[k]];
-    const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));  // d q_k / d v
-    const double above = q - (joint.upper - parameters.limit_margin);
-    const double below = joint.lower + parameters.limit_margin - q;
-    if (above > 0) AddWall(row, above / row.norm(), f.normal_W, walls);
-    if (below > 0) AddWall(-row, below / row.norm(), f.normal_W, walls);
-  }
-  Capsule own, other;
-  if (CapsuleOf(hand, estimate, model.tip_link, &own) && (own.b - own.a).norm() > 1e-6) {
-    // The contact must stay on the round end: on the side of the link it no longer follows the tip.
-    // facing = d . n is negative there (d: along the link, n: outward normal); its rate of change
-    // with the contact velocity v is (w x d) . n + d . v / (R + r), with w the link's angular
-    // velocity.
-    const Vector3d d = (own.b - own.a).normalized();
-    const Vector3d& n = f.normal_W;
-    const double facing = d.dot(n);
-    if (facing > parameters.least_facing) {
-      Vector3d rate = d / (estimate.object_scale + own.radius);
-      for (std::size_t k = 0; k < model.joints.size(); ++k) {
-        const Vector3d row = inverse * f.J.col(static_cast<Eigen::Index>(k));
-        const Vector3d turn =
-            AngularRate(hand, estimate.kinematics, model.joints[k], model.tip_link);
-        rate += turn.cross(d).dot(n) * row;
-      }
-      constexpr bool kMustLeave = true;  // the finger would roll off over the side of its link
-      AddWall(rate, (facing - parameters.least_facing) / rate.norm(), n, walls, kMustLeave);
-    }
-  }
-  const auto Before = [&](int link) {
-    return hand.joints[hand.links[link].parent_joint].parent_link;
-  };
-  for (int own_link : {model.tip_link, Before(model.tip_link)}) {
-    if (!CapsuleOf(hand, estimate, own_link, &own)) continue;
-    for (int i = 0; i < hand.num_fingers(); ++i) {
-      const int tip = hand.fingers[i].tip_link;
-      if (i == finger) continue;
-      for (int link : {tip, Before(tip)}) {
-        if (!CapsuleOf(hand, estimate, link, &other)) continue;
-        const Closest closest = BetweenSegments(own, other);
-        const Vector3d between = closest.on_two - closest.on_one;
-        const double distance = between.norm();
-        const double depth = own.radius + other.radius + parameters.clearance - distance;
-        if (depth <= 0 || distance < kTouching) continue;
-        // How fast the links near each other, per contact velocity: the joints that move the own
-        // link, with q' = J⁺ v.
-        Vector3d rate = Vector3d::Zero();
-        for (std::size_t k = 0; k < model.joints.size(); ++k) {
-          const Vector3d v =
-              PointRate(hand, estimate.kinematics, model.joints[k], own_link, closest.on_one);
-          rate += v.dot(between) / distance * (inverse * f.J.col(static_cast<Eigen::Index>(k)));
-        }
-        if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), f.normal_W, walls);
-      }
-    }
-  }
+  const Explorer explorer{
+      hand, estimate, parameters, finger, hand.fingers[finger], f, DampedInverse(f.J, kDamping)};
+  AddJointLimits(explorer, walls);
+  AddTipSide(explorer, walls);
+  AddOtherFingers(explorer, walls);
 }
 
 }  // namespace regrasp

@@ -10,6 +10,6 @@ namespace regrasp {
 /// wall's direction is the contact motion that changes its quantity most: for a joint its row of
 /// J⁺, for two links the gradient of their distance through J⁺.
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
-               const ExplorationParameters& parameters, FixedVector<Wall, 8>* walls);
+               const ExplorationParameters& parameters, Walls* walls);
 
 }  // namespace regrasp

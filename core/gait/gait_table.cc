@@ -1,6 +1,40 @@
 #include "core/gait/gait_table.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
 namespace regrasp {
+namespace {
+
+using Neighbours = FixedVector<int, kMaxFingers>;
+
+/// Where the finger's first joint sits in the palm [m].
+Vector3d RootOf(const HandModel& hand, int finger) {
+  const std::vector<int>& joints = hand.fingers[finger].joints;
+  if (joints.empty()) return Vector3d::Zero();
+  return hand.joints[joints.front()].X_PJ.translation();
+}
+
+/// The others, the farthest from the opposing finger's root first; of equals in the hand's order.
+Neighbours NeighboursOf(const HandModel& hand, int opposing, FingerSet fingers) {
+  Neighbours neighbours;
+  if (opposing < 0) {
+    for (int i : fingers) neighbours.push_back(i);
+    return neighbours;
+  }
+  const Vector3d root = RootOf(hand, opposing);
+  const auto distance = [&](int finger) { return (RootOf(hand, finger) - root).norm(); };
+  for (int i : fingers.without(opposing)) {
+    neighbours.push_back(i);
+    for (std::size_t k = neighbours.size() - 1;
+         k > 0 && distance(neighbours[k]) > distance(neighbours[k - 1]); --k)
+      std::swap(neighbours[k], neighbours[k - 1]);
+  }
+  return neighbours;
+}
+
+}  // namespace
 
 int OpposingFinger(const Estimate& estimate, FingerSet fingers) {
   if (fingers.size() < 2) return -1;
@@ -18,22 +52,37 @@ int OpposingFinger(const Estimate& estimate, FingerSet fingers) {
   return opposing;
 }
 
-GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, FingerSet fingers) {
-  GaitOrder order;
-  const int last = OpposingFinger(estimate, fingers);
-  FingerSet left = fingers.without(last);
-  const auto Add = [&](int finger) {
-    if (!left.contains(finger)) return;
-    left.remove(finger);
-    order.push_back({finger, GaitObjective::kManipulability});
+GaitStateName GaitStateNameOf(const HandModel& hand, int finger) {
+  GaitStateName name;
+  if (finger < 0) {
+    std::snprintf(name.text.data(), name.text.size(), "object motion");
+    return name;
+  }
+  const std::string& own = hand.fingers[finger].name;
+  const auto alike = [&](const Finger& other) {
+    return !other.name.empty() && !own.empty() && other.name.front() == own.front();
   };
-  for (const GaitRow& row : kGaitTable)
-    for (int i = 0; i < hand.num_fingers(); ++i)
-      if (hand.fingers[i].name == row.finger) Add(i);
-  for (int i = 0; i < hand.num_fingers(); ++i) Add(i);
-  if (last >= 0) {
-    if (!order.empty()) order.back().objective = GaitObjective::kStabilityWithoutNext;
-    order.push_back({last, GaitObjective::kManipulability});
+  if (std::count_if(hand.fingers.begin(), hand.fingers.end(), alike) == 1) {
+    const int initial = std::toupper(static_cast<unsigned char>(own.front()));
+    std::snprintf(name.text.data(), name.text.size(), "S_%c", initial);
+  } else {
+    std::snprintf(name.text.data(), name.text.size(), "S_%.21s", own.c_str());
+  }
+  return name;
+}
+
+GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, FingerSet fingers) {
+  const int opposing = OpposingFinger(estimate, fingers);
+  const Neighbours neighbours = NeighboursOf(hand, opposing, fingers);
+  GaitOrder order;
+  for (const GaitRow& row : kGaitTable) {
+    for (std::size_t k = 0; k < neighbours.size(); ++k) {
+      const bool last = opposing >= 0 && k + 1 == neighbours.size();
+      if (row.free == (last ? GaitRole::kLastNeighbour : GaitRole::kNeighbours))
+        order.push_back({neighbours[k], row.objective});
+    }
+    if (row.free == GaitRole::kOpposing && opposing >= 0)
+      order.push_back({opposing, row.objective});
   }
   return order;
 }

@@ -1,12 +1,13 @@
 #pragma once
 
-/// The finger gait of the paper (Sec. III b) as a table.
+/// The finger gait of the paper (Sec. III b) as a table, by the fingers' roles in the grasp, so
+/// that every hand has one. The five-fingered hand's states are the paper's: S_L, S_R, S_M, S_F,
+/// S_T.
 
 #include <array>
 #include <string_view>
 
-#include "core/control/estimate.h"
-#include "core/hand/hand_model.h"
+#include "core/control/control_tick.h"
 
 namespace regrasp {
 
@@ -17,28 +18,44 @@ enum class GaitObjective : std::uint8_t {
   kStabilityWithoutNext  ///< stability of the grasp without the next finger of the table
 };
 
+/// Which finger is free. The opposing finger is the one without which the others can hold least
+/// (OpposingFinger); its neighbours are the others, in order: the farthest from its root first.
+enum class GaitRole : std::uint8_t {
+  kNobody,         ///< all fingers hold
+  kNeighbours,     ///< all neighbours but the last, one after the other
+  kLastNeighbour,  ///< the one next to the opposing finger
+  kOpposing,
+};
+
 struct GaitRow {
-  std::string_view state;   ///< the paper's name
-  std::string_view finger;  ///< that is free; empty: all fingers hold
+  GaitRole free;
   GaitObjective objective;
 };
 
 /// One cycle of the gait, top to bottom, again and again. All other fingers hold.
-inline constexpr std::array<GaitRow, 6> kGaitTable{{
-    // state          free finger   objective
-    {"object motion", "", GaitObjective::kNone},
-    {"S_L", "little", GaitObjective::kManipulability},
-    {"S_R", "ring", GaitObjective::kManipulability},
-    {"S_M", "middle", GaitObjective::kManipulability},
-    {"S_F", "first", GaitObjective::kStabilityWithoutNext},
-    {"S_T", "thumb", GaitObjective::kManipulability},
+inline constexpr std::array<GaitRow, 4> kGaitTable{{
+    // free finger               objective                              the paper's states
+    {GaitRole::kNobody, GaitObjective::kNone},                         // object motion
+    {GaitRole::kNeighbours, GaitObjective::kManipulability},           // S_L, S_R, S_M
+    {GaitRole::kLastNeighbour, GaitObjective::kStabilityWithoutNext},  // S_F
+    {GaitRole::kOpposing, GaitObjective::kManipulability},             // S_T
 }};
+
+/// The name of a state of the gait.
+struct GaitStateName {
+  std::array<char, 24> text{};  ///< ends with 0
+  std::string_view view() const { return text.data(); }
+};
+/// The state in which this finger is free, "S_" and its initial: S_T for the thumb. Where two
+/// fingers of the hand begin alike, "S_" and its name, shortened to 21 letters. -1: "object
+/// motion".
+GaitStateName GaitStateNameOf(const HandModel& hand, int finger);
 
 /// The finger whose contact normal points most against the sum of the others': the one without
 /// which the others can hold least. -1 with fewer than two touching fingers of `fingers`.
 int OpposingFinger(const Estimate& estimate, FingerSet fingers);
 
-/// One step of a gait made for a hand.
+/// One step of a gait made for a hand: a row, with its finger.
 struct GaitStep {
   int finger = -1;
   GaitObjective objective = GaitObjective::kManipulability;
@@ -50,9 +67,8 @@ struct GaitStep {
 };
 using GaitOrder = FixedVector<GaitStep, kMaxFingers>;
 
-/// The table for this hand: its rows whose finger the hand has, then the hand's other fingers, then
-/// the opposing finger, which is always last; the finger before it maximises stability without it.
-/// Only fingers of `fingers`.
+/// The table for this grasp: its rows in order with their fingers, without the row of object
+/// motion. Without an opposing finger the only one is a neighbour. Only fingers of `fingers`.
 GaitOrder MakeGaitOrder(const HandModel& hand, const Estimate& estimate, FingerSet fingers);
 
 }  // namespace regrasp

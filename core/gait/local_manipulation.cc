@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include "core/hand/damped_inverse.h"
+
 namespace regrasp {
 namespace {
 
+constexpr double kDamping = 1e-6;  // m²: of the joint rates (1 mm)
 constexpr double kStuck_s = 0.5;
 constexpr double kStuckYielding_s = 1.0;  // a finger that begins to slip takes its time
 constexpr double kMovesTurning = 0.3;     // rad per rad of the object
@@ -52,8 +55,7 @@ bool LocalManipulation::AtJointLimit(const ControlTick& tick, int finger,
   // A joint that moves less than this, per unit of path, may stand at its limit.
   const double least_rate = (turns() ? kMovesTurning : 0.0) + kMovesShifting * per_path_.v_W.norm();
   const FingerEstimate& f = tick.finger(finger);
-  const Matrix3d inverse = (f.J * f.J.transpose() + 1e-6 * Matrix3d::Identity()).inverse();
-  const Vector3d along = inverse * v_W;
+  const Vector3d along = DampedInverse(f.J, kDamping) * v_W;
   const auto& joints = tick.hand.fingers[finger].joints;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const double q = tick.estimate.q[joints[k]];

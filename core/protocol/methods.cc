@@ -411,8 +411,9 @@ constexpr std::array kMethods = {
     MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
                "version, protocol, state, paused, clock (continuous, lockstep), "
                "advancing (time goes on now), tick, time_s, state_hash, real_time_factor, "
-               "speed, tick_p99_s, seed, hand, object, job, gait: {active, phase, finger, "
-               "target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop: "
+               "speed, tick_p99_s, seed, hand, object, job, gait: {active, phase, finger, state, "
+               "reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, "
+               "incident (the last drop: "
                "tick, cause, record, "
                "picture; or null), noise, clients, ..."},
     MethodSpec{"step", "step", "advance a simulation that is paused, or stands still in lockstep",

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "core/common/nearest_name.h"
 #include "core/quality/evaluate.h"
 
 namespace regrasp {
@@ -20,22 +20,6 @@ using Json = nlohmann::json;
 constexpr int kMaxDepth = 32;
 
 [[noreturn]] void Fail(const std::string& message) { throw std::invalid_argument(message); }
-
-/// Number of insertions, deletions and replacements between two words [Levenshtein 1966].
-std::size_t EditDistance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
 
 /// Parses strictly: no duplicate names, bounded depth, finite numbers (the parser refuses
 /// overflow).

@@ -87,9 +87,12 @@ struct ExplorationFrame {
 /// Finger gait, while rotating.
 struct GaitFrame {
   bool active = false;
-  int phase = 0;    ///< GaitPhase
-  int finger = -1;  ///< the finger that regrasps, -1 during object motion
-  double target_angle_rad = 0, achieved_angle_rad = 0;
+  int phase = 0;        ///< GaitPhase
+  int finger = -1;      ///< the finger that regrasps, -1 during object motion
+  char state[24] = {};  ///< row of the gait table: "S_T", ..., "object motion" while all hold
+  double reference_angle_rad = 0;  ///< of the object's reference so far
+  double target_angle_rad = 0;     ///< the same, by its older name
+  double achieved_angle_rad = 0;   ///< of the object, by the truth
   int cycles = 0, regrasps = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <initializer_list>
 
 #include "core/common/random.h"
+#include "core/hand/damped_inverse.h"
 #include "core/hand/kinematics.h"
 #include "core/session/session.h"
 
@@ -19,8 +20,7 @@ void MoveTip(const HandModel& hand, int finger, const Vector3d& target, JointVec
     ForwardKinematics(hand, *q, &data);
     const Vector3d tip = FingertipCentre(hand, data, finger);
     const FingerJacobian J = PointJacobian(hand, data, finger, tip);
-    const Matrix3d JJt = J * J.transpose() + 1e-5 * Matrix3d::Identity();
-    const FingerVector dq = J.transpose() * (JJt.inverse() * (target - tip));
+    const FingerVector dq = J.transpose() * (DampedInverse(J, 1e-5) * (target - tip));
     for (std::size_t n = 0; n < hand.fingers[finger].joints.size(); ++n) {
       const int j = hand.fingers[finger].joints[n];
       (*q)[j] = std::clamp((*q)[j] + dq[static_cast<Eigen::Index>(n)], hand.joints[j].lower,

@@ -105,7 +105,9 @@ std::vector<Field> Fields(RunTopic topic) {
               kTime,
               {"phase", "string", "of the gait"},
               {"finger", "integer", "index of the finger that regrasps, -1: none"},
-              {"target_angle_rad", "number", ""},
+              {"state", "string", "of the gait table: S_T, ..., object motion while all hold"},
+              {"reference_angle_rad", "number", "of the object's reference so far"},
+              {"target_angle_rad", "number", "the same, by its older name"},
               {"achieved_angle_rad", "number", ""},
               {"cycles", "integer", ""},
               {"regrasps", "integer", ""}};
@@ -204,6 +206,8 @@ std::string RunSample(RunTopic topic, const Published& published, int segment) {
     case RunTopic::kGait:
       json["phase"] = Name(static_cast<GaitPhase>(frame.gait.phase));
       json["finger"] = frame.gait.finger;
+      json["state"] = frame.gait.state;
+      json["reference_angle_rad"] = Round(frame.gait.reference_angle_rad);
       json["target_angle_rad"] = Round(frame.gait.target_angle_rad);
       json["achieved_angle_rad"] = Round(frame.gait.achieved_angle_rad);
       json["cycles"] = frame.gait.cycles;

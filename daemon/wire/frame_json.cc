@@ -187,6 +187,8 @@ Json GaitJson(const GaitFrame& gait, const HandModel& hand) {
   return {{"active", gait.active},
           {"phase", gait.active ? Json(Name(static_cast<GaitPhase>(gait.phase))) : Json()},
           {"finger", FingerName(hand, gait.finger)},
+          {"state", gait.active ? Json(gait.state) : Json()},
+          {"reference_angle_rad", gait.reference_angle_rad},
           {"target_angle_rad", gait.target_angle_rad},
           {"achieved_angle_rad", gait.achieved_angle_rad},
           {"cycles", gait.cycles},

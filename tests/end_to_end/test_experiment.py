@@ -87,18 +87,6 @@ class ExperimentCase(Case):
 
 
 class Independence(ExperimentCase):
-    def test_branches_of_a_kept_start_are_the_trials_that_grasp_themselves(self):
-        # The second estimator and every ray go on from the first one's grasp; alone each grasps itself.
-        def explore(name, rays, estimators):
-            self.run_experiment("exploration", "--finger", "ring", "-n", "1", "--set", "exploration.max_cycles=600",
-                                "--models-dir", SOURCE / "models", "--rays", rays, "--estimator", estimators,
-                                "-o", self.dir / name)
-            return self.rows(name)
-
-        for row in explore("both", 2, "least_squares,secant"):
-            (alone,) = explore(row["estimator"], 0, row["estimator"])
-            self.assertEqual(alone, {key: row[key] for key in alone} | {"command": alone["command"]})
-
     def test_workers_interruption_shards_and_single_trials_give_the_same_bytes(self):
         self.explore("one", "--workers", "1")
         self.explore("two", "--workers", "2")

@@ -18,15 +18,14 @@ class Methods:
         """
         return self._ask("checkpoint.list", {})
 
-    def checkpoint_restore(self, name: str, seed: int | None = None, reexecute: bool | None = None) -> Job:
+    def checkpoint_restore(self, name: str, seed: int | None = None) -> Job:
         """Go on from a checkpoint: identically, or with another seed.
         name: letters, digits, - _ . ; at most 64, no dot first.
         seed: branch: sensor noise and later random choices follow this seed; 0 to 9007199254740992; left out: go on
             identically.
-        reexecute: execute the commands again from tick 0, rather than load the state; left out: false.
         Returns a Job.
         """
-        return self._job("checkpoint.restore", {"name": name, "seed": seed, "reexecute": reexecute})
+        return self._job("checkpoint.restore", {"name": name, "seed": seed})
 
     def checkpoint_save(self, name: str) -> dict:
         """Keep this moment, to go on from it later.
@@ -162,25 +161,19 @@ class Methods:
             control.rotation_integral, control.rotation_stiffness, control.settle_s, control.slide_force_limit,
             control.slide_friction_share, control.slide_stiffness, control.stability_measure,
             control.stability_threshold, control.stand_in_release_s, control.torque_integral_limit,
-            exploration.arrived, exploration.best_filter_s, exploration.clearance, exploration.converged_updates,
-            exploration.disc_slack, exploration.dither_hz, exploration.dither_speed, exploration.epsilon,
-            exploration.eta, exploration.force_share, exploration.forgetting, exploration.gradient_max,
-            exploration.lambda, exploration.least_facing, exploration.least_force, exploration.limit_margin,
-            exploration.little_gain, exploration.lost_contact_s, exploration.max_cycles, exploration.max_excursion,
-            exploration.min_displacement, exploration.normal_force, exploration.object_slow,
-            exploration.object_stop, exploration.object_wait_s, exploration.reload_limit_s, exploration.return_gain,
-            exploration.return_limit_s, exploration.settle_s, exploration.sigma, exploration.speed_max,
-            exploration.speed_min, exploration.stability_weight, exploration.transfer_s, exploration.tries,
-            exploration.update_cycles, exploration.worth_returning, gait.abort_position, gait.abort_rotation,
-            gait.acceleration, gait.across_speed, gait.by_need, gait.clear_distance, gait.disc_radius,
-            gait.down_speed, gait.estimator, gait.explore_s, gait.explore_settle_s, gait.grip_force, gait.hop,
-            gait.hop_force, gait.lag_position, gait.lag_rotation, gait.land_depth, gait.land_distance,
-            gait.land_late_s, gait.lead, gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min,
-            gait.margin_wanted, gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode,
-            gait.move_speed, gait.return_limit_s, gait.settle_s, gait.skip_distance, gait.slide_arrived,
-            gait.slide_force, gait.slide_gain, gait.slide_limit_s, gait.slide_speed, gait.speed_rad_s,
-            gait.step_rad, gait.touch_s, gait.transfer_s, gravity, object.friction, object.mass_kg,
-            start.displacement_m, start.joint_sigma_rad, start.object_sigma_m; left out: all parameters.
+            exploration.clearance, exploration.converged_updates, exploration.dither_hz, exploration.dither_speed,
+            exploration.epsilon, exploration.eta, exploration.forgetting, exploration.gradient_max,
+            exploration.lambda, exploration.least_facing, exploration.limit_margin, exploration.max_cycles,
+            exploration.max_excursion, exploration.min_displacement, exploration.normal_force, exploration.sigma,
+            exploration.speed_max, exploration.speed_min, exploration.stability_weight, exploration.transfer_s,
+            exploration.update_cycles, gait.abort_position, gait.abort_rotation, gait.acceleration,
+            gait.across_speed, gait.by_need, gait.disc_radius, gait.down_speed, gait.estimator, gait.explore_s,
+            gait.grip_force, gait.hop, gait.hop_force, gait.lag_position, gait.lag_rotation, gait.lead,
+            gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min, gait.margin_wanted,
+            gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode, gait.move_speed, gait.settle_s,
+            gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
+            gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
+            start.joint_sigma_rad, start.object_sigma_m; left out: all parameters.
         Returns parameters: [{name, value, unit, min, max, description, source}], or one of them.
         """
         return self._ask("param.get", {"name": name})
@@ -199,25 +192,19 @@ class Methods:
             control.rotation_integral, control.rotation_stiffness, control.settle_s, control.slide_force_limit,
             control.slide_friction_share, control.slide_stiffness, control.stability_measure,
             control.stability_threshold, control.stand_in_release_s, control.torque_integral_limit,
-            exploration.arrived, exploration.best_filter_s, exploration.clearance, exploration.converged_updates,
-            exploration.disc_slack, exploration.dither_hz, exploration.dither_speed, exploration.epsilon,
-            exploration.eta, exploration.force_share, exploration.forgetting, exploration.gradient_max,
-            exploration.lambda, exploration.least_facing, exploration.least_force, exploration.limit_margin,
-            exploration.little_gain, exploration.lost_contact_s, exploration.max_cycles, exploration.max_excursion,
-            exploration.min_displacement, exploration.normal_force, exploration.object_slow,
-            exploration.object_stop, exploration.object_wait_s, exploration.reload_limit_s, exploration.return_gain,
-            exploration.return_limit_s, exploration.settle_s, exploration.sigma, exploration.speed_max,
-            exploration.speed_min, exploration.stability_weight, exploration.transfer_s, exploration.tries,
-            exploration.update_cycles, exploration.worth_returning, gait.abort_position, gait.abort_rotation,
-            gait.acceleration, gait.across_speed, gait.by_need, gait.clear_distance, gait.disc_radius,
-            gait.down_speed, gait.estimator, gait.explore_s, gait.explore_settle_s, gait.grip_force, gait.hop,
-            gait.hop_force, gait.lag_position, gait.lag_rotation, gait.land_depth, gait.land_distance,
-            gait.land_late_s, gait.lead, gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min,
-            gait.margin_wanted, gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode,
-            gait.move_speed, gait.return_limit_s, gait.settle_s, gait.skip_distance, gait.slide_arrived,
-            gait.slide_force, gait.slide_gain, gait.slide_limit_s, gait.slide_speed, gait.speed_rad_s,
-            gait.step_rad, gait.touch_s, gait.transfer_s, gravity, object.friction, object.mass_kg,
-            start.displacement_m, start.joint_sigma_rad, start.object_sigma_m.
+            exploration.clearance, exploration.converged_updates, exploration.dither_hz, exploration.dither_speed,
+            exploration.epsilon, exploration.eta, exploration.forgetting, exploration.gradient_max,
+            exploration.lambda, exploration.least_facing, exploration.limit_margin, exploration.max_cycles,
+            exploration.max_excursion, exploration.min_displacement, exploration.normal_force, exploration.sigma,
+            exploration.speed_max, exploration.speed_min, exploration.stability_weight, exploration.transfer_s,
+            exploration.update_cycles, gait.abort_position, gait.abort_rotation, gait.acceleration,
+            gait.across_speed, gait.by_need, gait.disc_radius, gait.down_speed, gait.estimator, gait.explore_s,
+            gait.grip_force, gait.hop, gait.hop_force, gait.lag_position, gait.lag_rotation, gait.lead,
+            gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min, gait.margin_wanted,
+            gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode, gait.move_speed, gait.settle_s,
+            gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
+            gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
+            start.joint_sigma_rad, start.object_sigma_m.
         value: its new value, of the type and in the range that param.get tells.
         Returns {name, value, unit, min, max, description, source}.
         """

@@ -64,7 +64,9 @@ void RotateActivity::Record(const ActivityContext& context, Frame* frame) const 
   gait.active = true;
   gait.phase = static_cast<int>(gait_.phase());
   gait.finger = gait_.finger();
-  gait.target_angle_rad = gait_.turned();
+  const GaitStateName state = GaitStateNameOf(context.now.hand, gait_.finger());
+  std::copy(state.text.begin(), state.text.end(), gait.state);
+  gait.reference_angle_rad = gait.target_angle_rad = gait_.turned();
   gait.achieved_angle_rad = context.job.rotate.angle_rad;
   gait.cycles = gait_.cycles();
   gait.regrasps = gait_.regrasps();

@@ -5,17 +5,26 @@
 #include <gtest/gtest.h>
 
 #include "core/gait/stance_search.h"
+#include "core/hand/scenario.h"
 #include "core/quality/load_margin.h"
 
 namespace regrasp {
 namespace {
 
+/// A hand whose fingers stand in a row, 2 cm apart, the first one next to the last one's root.
 HandModel HandWith(std::initializer_list<const char*> names) {
   HandModel hand;
+  int place = 0;
   for (const char* name : names) {
     Finger finger;
     finger.name = name;
+    finger.joints = {hand.num_joints()};
+    Joint joint;
+    const bool last = place + 1 == static_cast<int>(names.size());
+    joint.X_PJ.translation() = last ? Vector3d(0.015, 0, 0) : Vector3d(-0.02 * place, 0, 0);
+    hand.joints.push_back(joint);
     hand.fingers.push_back(finger);
+    ++place;
   }
   return hand;
 }
@@ -34,13 +43,52 @@ Estimate Touching(std::initializer_list<Vector3d> normals) {
 }
 
 TEST(GaitTable, ReadsLikeThePaper) {
-  const char* states[] = {"object motion", "S_L", "S_R", "S_M", "S_F", "S_T"};
-  const char* fingers[] = {"", "little", "ring", "middle", "first", "thumb"};
-  for (std::size_t k = 0; k < kGaitTable.size(); ++k) {
-    EXPECT_EQ(kGaitTable[k].state, states[k]);
-    EXPECT_EQ(kGaitTable[k].finger, fingers[k]);
-    EXPECT_EQ(kGaitTable[k].objective == GaitObjective::kStabilityWithoutNext, k == 4);
+  const HandModel hand = HandWith({"first", "middle", "ring", "little", "thumb"});
+  const Estimate estimate =
+      Touching({{0.3, 1, 0}, {0.1, 1, 0}, {-0.1, 1, 0}, {-0.3, 1, 0}, {0, -1, 0}});
+  const GaitOrder order = MakeGaitOrder(hand, estimate, FingerSet::First(5));
+  const char* states[] = {"S_L", "S_R", "S_M", "S_F", "S_T"};
+  ASSERT_EQ(order.size(), 5u);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    EXPECT_EQ(GaitStateNameOf(hand, order[k].finger).view(), states[k]);
+    EXPECT_EQ(order[k].objective == GaitObjective::kStabilityWithoutNext, k == 3);
   }
+  EXPECT_EQ(GaitStateNameOf(hand, -1).view(), "object motion");
+}
+
+TEST(GaitTable, ShadowsModelHasThePapersOrder) {
+  const HandModel hand = LoadScenario("shadow", "sphere", ModelSearchPath()).hand;
+  Estimate estimate;
+  for (const Finger& finger : hand.fingers) {
+    FingerEstimate f;
+    f.normal_W = Vector3d(0, finger.name == "thumb" ? -1 : 1, 0);
+    estimate.fingers.push_back(f);
+  }
+  std::string states;
+  for (const GaitStep& step : MakeGaitOrder(hand, estimate, FingerSet::First(5)))
+    states += std::string(GaitStateNameOf(hand, step.finger).view()) + " ";
+  EXPECT_EQ(states, "S_L S_R S_M S_F S_T ");
+}
+
+TEST(GaitTable, FingersThatBeginAlikeHaveTheirNamesInFull) {
+  const HandModel hand = HandWith({"index", "inner", "thumb"});
+  EXPECT_EQ(GaitStateNameOf(hand, 0).view(), "S_index");
+  EXPECT_EQ(GaitStateNameOf(hand, 1).view(), "S_inner");
+  EXPECT_EQ(GaitStateNameOf(hand, 2).view(), "S_T");
+  const HandModel long_names = HandWith({"a_very_long_name_of_a_finger", "a_b", "c"});
+  EXPECT_EQ(GaitStateNameOf(long_names, 0).view(), "S_a_very_long_name_of_a");
+}
+
+TEST(GaitOrder, FewerFingersHaveATableToo) {
+  const HandModel hand = HandWith({"index", "middle", "ring", "thumb"});
+  const Estimate estimate = Touching({{0.2, 1, 0}, {0, 1, 0}, {-0.2, 1, 0}, {0, -1, 0}});
+  const GaitOrder order = MakeGaitOrder(hand, estimate, FingerSet::First(4));
+  const int expected[] = {2, 1, 0, 3};
+  ASSERT_EQ(order.size(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(order[k].finger, expected[k]);
+  EXPECT_EQ(order[2].objective, GaitObjective::kStabilityWithoutNext);
+  EXPECT_EQ(MakeGaitOrder(hand, estimate, {1}).size(), 1u);  // nobody opposes it
+  EXPECT_TRUE(MakeGaitOrder(hand, estimate, {}).empty());
 }
 
 TEST(GaitOrder, OfTheFiveFingeredHandIsTheTable) {
