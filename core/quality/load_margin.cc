@@ -1,8 +1,10 @@
 #include "core/quality/load_margin.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace regrasp {
 namespace {
@@ -14,7 +16,7 @@ constexpr double kDegeneracyShift =
 constexpr double kGap = 1e-6;        // of the weight: where a maximisation stops
 constexpr double kMaxSqueeze = 1e5;  // weights: a grasp that needs more does not hold
 constexpr double kPivot = 1e-10;
-constexpr int kMaxPivots = 400;  // per maximisation; typical 5 to 20
+constexpr int kMaxPivots = 400;  // per maximisation; typical 3, of the least direction 25
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
@@ -29,15 +31,16 @@ double ConeReach(const GraspContact& contact, double v_t, double spin) {
 /// a(u) = G (n + mu u), |u| = 1 (with a moment about n for soft fingers), of all contacts:
 /// infinitely many, but the best one for given prices y has a closed form, u along the tangential
 /// part of y. Every basis is feasible, hence a lower bound. Rows: 6 of wrench balance, then, with
-/// capped normal forces, one per contact. Units: weight, torque_scale.
-template <int kMaxRows>
+/// capped normal forces, one per contact; rows beyond those stay those of the identity and never
+/// enter. Units: weight, torque_scale.
+template <int kRows>
 class ConeSimplex {
  public:
   ConeSimplex(std::span<const GraspContact> contacts, double torque_scale, double cap)
       : contacts_(contacts),
         inverse_scale_(1.0 / torque_scale),
         capped_(cap < kUncapped),
-        rows_(6 + (capped_ ? static_cast<int>(contacts.size()) : 0)),
+        rows_(kRows != Eigen::Dynamic ? kRows : 6 + static_cast<int>(contacts.size())),
         cap_(cap) {}
 
   /// Phase 1: a basis of real columns with sum of wrenches = target. False where there is none.
@@ -71,27 +74,33 @@ class ConeSimplex {
     return false;
   }
 
-  /// Phase 2, from the basis of Reach(): the largest delta with target + delta * direction
-  /// reachable; stops as soon as delta exceeds `enough`. Destroys the basis.
-  double Maximise(const Vector6d& direction, double enough) {
+  /// Phase 2, from the basis of Reach(): towards the largest delta with target + delta * direction
+  /// reachable. reached() is a lower bound from now on.
+  void Begin(const Vector6d& direction) {
     column_ = -(inverse_.template leftCols<6>() * direction);
-    const int row = RatioTest();
-    if (row < 0) return kInfinity;
-    Pivot(row);
-    for (int pivots = 0; pivots < kMaxPivots && x_(row) < enough; ++pivots) {
-      prices_ = inverse_.row(row).transpose();
-      const double gain = -Price();
-      if (gain * (x_.sum() + 1.0) < kGap) break;
-      const int leaving = RatioTest();
-      if (leaving < 0) return kInfinity;
-      Pivot(leaving);
+    objective_ = RatioTest();
+    if (objective_ < 0) {
+      unbounded_ = true;
+    } else {
+      Pivot(objective_);
     }
-    return x_(row);
   }
+  /// One step. False where reached() is the largest delta already.
+  bool Advance() {
+    if (unbounded_ || ++pivots_ > kMaxPivots) return false;
+    prices_ = inverse_.row(objective_).transpose();
+    const double gain = -Price();
+    if (gain * (x_.sum() + 1.0) < kGap) return false;
+    const int leaving = RatioTest();
+    unbounded_ = leaving < 0;
+    if (!unbounded_) Pivot(leaving);
+    return true;
+  }
+  double reached() const { return unbounded_ ? kInfinity : x_(objective_); }
 
  private:
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxRows, 1>;
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxRows, kMaxRows>;
+  using Column = Eigen::Matrix<double, kRows, 1>;
+  using Square = Eigen::Matrix<double, kRows, kRows>;
 
   /// The column with the least prices_ᵀ a; leaves inverse_ * a in column_.
   double Price() {
@@ -169,7 +178,7 @@ class ConeSimplex {
     x_ = x_.cwiseMax(0.0);
     column_(row) -= 1.0;
     pivot_row_ = inverse_.row(row).transpose() * scale;
-    inverse_.noalias() -= column_ * pivot_row_.transpose();
+    for (int k = 0; k < rows_; ++k) inverse_.col(k) -= column_ * pivot_row_(k);
   }
 
   std::span<const GraspContact> contacts_;
@@ -178,11 +187,19 @@ class ConeSimplex {
   int rows_;
   double cap_;
   bool artificial_[6] = {};
+  int objective_ = -1;  // row of delta
+  int pivots_ = 0;
+  bool unbounded_ = false;
   Square inverse_;
   Column x_, prices_, column_, pivot_row_;
 };
 
-template <int kMaxRows>
+template <typename T, std::size_t... k>
+std::array<T, sizeof...(k)> Copies(const T& value, std::index_sequence<k...>) {
+  return {((void)k, value)...};
+}
+
+template <int kRows>
 double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, double torque_scale,
              double max_force) {
   const double norm = weight.norm();
@@ -194,16 +211,20 @@ double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, dou
   shift << 0.31, -0.47, 0.73, 0.59, -0.23, 0.89;
   target += kDegeneracyShift * shift;
 
-  ConeSimplex<kMaxRows> start(contacts, torque_scale,
-                              max_force < kUncapped ? max_force / unit : max_force);
+  ConeSimplex<kRows> start(contacts, torque_scale,
+                           max_force < kUncapped ? max_force / unit : max_force);
   if (!start.Reach(target)) return 0.0;
-  double margin = kInfinity;
-  for (int k = 0; k < 6; ++k) {
-    for (const double sign : {1.0, -1.0}) {
-      ConeSimplex<kMaxRows> simplex = start;
-      margin = std::min(margin, simplex.Maximise(sign * Vector6d::Unit(k), margin));
-    }
-  }
+  // Always on with the direction that has come least far: none goes beyond the least of all.
+  std::array<ConeSimplex<kRows>, 12> directions = Copies(start, std::make_index_sequence<12>());
+  for (int k = 0; k < 12; ++k)
+    directions[k].Begin((k % 2 == 0 ? 1.0 : -1.0) * Vector6d::Unit(k / 2));
+  const auto least = [&] {
+    return std::min_element(directions.begin(), directions.end(),
+                            [](const auto& a, const auto& b) { return a.reached() < b.reached(); });
+  };
+  auto current = least();
+  while (current->Advance()) current = least();
+  const double margin = current->reached();
   return margin * unit;
 }
 
@@ -212,6 +233,9 @@ double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, dou
 double LoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
                   double torque_scale, double max_force) {
   if (!(max_force < kUncapped)) return Solve<6>(contacts, weight, torque_scale, max_force);
+  // An even number of rows: two at a time fit a register.
+  if (contacts.size() <= 4) return Solve<10>(contacts, weight, torque_scale, max_force);
+  if (contacts.size() <= 6) return Solve<12>(contacts, weight, torque_scale, max_force);
   if (contacts.size() <= kMaxFingers)
     return Solve<6 + kMaxFingers>(contacts, weight, torque_scale, max_force);
   return Solve<Eigen::Dynamic>(contacts, weight, torque_scale, max_force);

@@ -21,8 +21,8 @@ namespace regrasp {
 ///
 /// Method: for each d a linear programme over all wrenches of the round cones, solved by the
 /// revised simplex method; instead of linearising a cone beforehand, the best of its infinitely
-/// many edges is found in closed form at each step (column generation [Dantzig, Wolfe 1960]). A
-/// direction is given up as soon as it is known not to be the least.
+/// many edges is found in closed form at each step (column generation [Dantzig, Wolfe 1960]). The
+/// 12 programmes advance in turn, always the one that has come least far, until that one is done.
 double LoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
                   double torque_scale, double max_force = 1e30);
 
