@@ -8,12 +8,23 @@
 #include "core/hand/scenario.h"
 #include "core/protocol/socket_path.h"
 #include "core/sensing/noise.h"
+#include "core/world/stepper_choice.h"
 #include "daemon/config/reload.h"
 #include "daemon/server/server.h"
 #include "daemon/server/service_manager.h"
 
 namespace regrasp {
 namespace {
+
+Stepper StepperFor(const std::string& word, const SessionConfig& session) {
+  if (word == "exact") return Stepper::kExact;
+  if (word == "fast") return Stepper::kFast;
+  const StepperChoice choice = ChooseStepper(session.model, session.world);
+  const bool fast = choice.stepper == Stepper::kFast;
+  spdlog::log(fast ? spdlog::level::debug : spdlog::level::warn, "stepper {}: {}",
+              fast ? "fast" : "exact", choice.reason);
+  return choice.stepper;
+}
 
 ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   CheckConfig(config, "");
@@ -33,7 +44,7 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   session.model = LoadScenario(config.hand, config.object, service.search_path, service.load);
   session.seed = config.seed;
   session.noise = *NoisePreset(config.noise);
-  session.world.stepper = config.stepper == "exact" ? Stepper::kExact : Stepper::kFast;
+  session.world.stepper = StepperFor(config.stepper, session);
   session.parameters.gravity_W = session.model.scenario.gravity_W;
   session.parameters = ParametersAfterReset(session.parameters, &session.model.object);
   for (const auto& [name, value] : config.parameters) {

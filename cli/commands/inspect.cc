@@ -65,7 +65,7 @@ ExitCode Status(Context& context, const Invocation& invocation) {
                                At(s, "clients") == 1 ? "" : "s"));
     if (context.options().verbose) {
       line("hash", Plain(At(s, "state_hash")));
-      for (const char* key : {"speed", "output_dir", "pid", "uptime_s", "socket"}) {
+      for (const char* key : {"speed", "stepper", "output_dir", "pid", "uptime_s", "socket"}) {
         if (!At(s, key).is_null()) line(key, Plain(At(s, key)));
       }
     }

@@ -41,6 +41,8 @@ std::vector<Arg> DaemonArgs() {
       arg("hand", "NAME|FILE", "hand model"),
       arg("object", "NAME|FILE", "object model"),
       arg("noise", "PRESET", "sensor noise", "paper"),
+      arg("stepper", "NAME", "fast, exact (the slow reference), or auto: what suits the hand",
+          "auto"),
       flag("paused", "begin with the clock stopped"),
       arg("models-dir", "DIR", "where models are looked for first"),
       flag("inertia-from-shape", "compute the object's centre and inertia from its shape"),

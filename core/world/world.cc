@@ -22,6 +22,7 @@ constexpr double kStopStiffness = 20.0;
 constexpr double kStopDamping = 0.05;
 // Anything faster is a simulation that has exploded [m/s, rad/s].
 constexpr double kMaxSpeed = 1e4;
+constexpr double kLeastMass = 1e-9;  // [kg]
 
 // Found by our own checks, outside ODE: the ODE world is still in order and can be destroyed.
 class WorldFault : public std::runtime_error {
@@ -120,6 +121,10 @@ void World::Impl::CheckInputs() const {
   if (!push_W.allFinite()) throw WorldFault("push force is not finite");
   if (!gravity_W.allFinite()) throw WorldFault("gravity is not finite");
   if (!(std::isfinite(mass) && mass > 0)) throw WorldFault("object mass is not positive");
+  // ODE would give up on what comes of these, and leave its world behind for good.
+  if (!(mass > kLeastMass)) throw WorldFault("object mass is absurd");
+  if (!stand_in && !((push_W / mass + gravity_W).norm() * config.dt < kMaxSpeed))
+    throw WorldFault("push force or gravity is absurd");
   if (!(std::isfinite(friction) && friction > 0)) throw WorldFault("friction is not positive");
 }
 
@@ -128,7 +133,10 @@ void World::Impl::CheckState() const {
   bool good = state.p_WO.allFinite() && state.q_WO.coeffs().allFinite();
   for (int i = 0; i < hand.num_joints(); ++i) good = good && sane(state.qdot[i]);
   for (int k = 0; k < 3; ++k) good = good && sane(state.v_WO[k]) && sane(state.w_WO[k]);
-  if (!good) throw WorldFault("the simulation has diverged");
+  if (!good)
+    throw WorldFault(config.stepper == Stepper::kFast
+                         ? "the simulation has diverged; try stepper exact"
+                         : "the simulation has diverged; try stepper fast");
 }
 
 void World::Impl::UpdateTorques() {

@@ -41,7 +41,7 @@ struct DaemonConfig {
   int max_clients = 64;
   std::string log_level = "info";   ///< trace debug info warn error off
   std::string log_format = "text";  ///< text or json
-  std::string stepper = "fast";     ///< fast or exact
+  std::string stepper = "auto";     ///< fast, exact or auto
   /// Values for the parameter table, in the order they were set.
   std::vector<std::pair<std::string, Vector3d>> parameters;
   /// Where the values that are not built in come from: "FILE:LINE", "$REGRASP_SEED", "--seed"; by

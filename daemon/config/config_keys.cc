@@ -71,7 +71,8 @@ constexpr std::array kKeys = {
               true, 1, 1000},
     TextKey<&C::log_level>("log_level", "LEVEL", "trace, debug, info, warn, error or off", true),
     TextKey<&C::log_format>("log_format", "FORMAT", "text or json, on standard error"),
-    TextKey<&C::stepper>("stepper", "NAME", "fast, or exact: the slow reference"),
+    TextKey<&C::stepper>("stepper", "NAME",
+                         "fast, exact (the slow reference), or auto: what suits the hand"),
 };
 
 void CheckWord(const std::string& where, std::string_view key, const std::string& value,
@@ -134,7 +135,7 @@ void CheckConfig(const DaemonConfig& config, const std::string& where) {
             {"trace", "debug", "info", "warn", "error", "off"});
   CheckWord(where, "log_format", config.log_format, {"text", "json"});
   CheckWord(where, "clock", config.clock, {"continuous", "lockstep"});
-  CheckWord(where, "stepper", config.stepper, {"fast", "exact"});
+  CheckWord(where, "stepper", config.stepper, {"fast", "exact", "auto"});
   if (config.hand.empty()) throw ConfigError(where + "hand is empty");
   if (config.max_clients < 1 || config.max_clients > 1000)
     throw ConfigError(

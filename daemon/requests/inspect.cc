@@ -34,6 +34,8 @@ Json StatusJson(Service& service) {
       {"tick_p99_s", service.control().tick_p99()},
       {"lateness_p99_s", service.control().lateness_p99()},
       {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
+      {"stepper",
+       service.config().control.session.world.stepper == Stepper::kFast ? "fast" : "exact"},
       {"seed", frame.seed},
       {"hand", service.hand().name},
       {"object", service.accepted.object->name},

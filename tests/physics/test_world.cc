@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include "core/common/random.h"
 #include "core/hand/kinematics.h"
 #include "core/hand/scenario.h"
+#include "core/world/stepper_choice.h"
 #include "core/world/world.h"
 #include "tests/physics/grasp_posture.h"
 #include "tests/physics/malloc_counter.h"
@@ -623,6 +625,51 @@ TEST_P(BothSteppers, AbsurdForcesInsideOdeAreFaults) {
   }
   Holding fresh(Config(GetParam()));  // and a new world works
   EXPECT_EQ(fresh.world->state().contacts.size(), 5u);
+}
+
+// Bytes that malloc has handed out and not got back, without what it keeps for itself.
+long BytesInUse() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<long>(info.uordblks + info.hblkhd);
+}
+
+TEST_P(BothSteppers, FaultsDoNotAddUp) {
+  if (!CountsAllocations()) GTEST_SKIP() << "a sanitizer owns malloc";
+  const auto cycle = [&](int k) {
+    World world(Shadow().hand, Shadow().object, Config(GetParam()), GraspPosture(Shadow().hand),
+                GraspObjectPose());
+    world.SetStandIn(false);
+    ASSERT_EQ(world.Step(), StepStatus::kOk);
+    if (k % 3 == 0) world.SetPush(Vector3d(1e30, 0, 0));
+    if (k % 3 == 1) world.SetMass(1e-300);
+    if (k % 3 == 2)
+      world.SetTorque(JointVector::Constant(Shadow().hand.num_joints(),
+                                            std::numeric_limits<double>::infinity()));
+    StepStatus status = StepStatus::kOk;
+    for (int n = 0; n < 20 && status == StepStatus::kOk; ++n) status = world.Step();
+    EXPECT_EQ(status, StepStatus::kFault) << k;
+  };
+  for (int k = 0; k < 30; ++k) cycle(k);
+  const long before = BytesInUse();
+  for (int k = 0; k < 300; ++k) cycle(k);
+  // A world is at least 100 kB; 300 worlds left behind would be 30 MB.
+  EXPECT_LT(BytesInUse() - before, 100000);
+}
+
+TEST(StepperChoice, TakesTheFastStepForAHandWhereBothAgree) {
+  const StepperChoice choice = ChooseStepper(Shadow(), {});
+  EXPECT_EQ(choice.stepper, Stepper::kFast) << choice.reason;
+  EXPECT_EQ(ChooseStepper(Shadow(), {}).reason, choice.reason) << "deterministic";
+  WorldConfig hinges;
+  hinges.merge_universal = false;
+  EXPECT_EQ(ChooseStepper(Shadow(), hinges).stepper, Stepper::kFast);
+}
+
+TEST(StepperChoice, TakesTheExactStepWhereTheFastOneIsOff) {
+  WorldConfig broken;
+  broken.contact_solver.max_sweeps = 0;  // contact forces stay zero: through the object
+  const StepperChoice choice = ChooseStepper(Shadow(), broken);
+  EXPECT_EQ(choice.stepper, Stepper::kExact) << choice.reason;
 }
 
 TEST(World, MalformedInputsAreFaults) {

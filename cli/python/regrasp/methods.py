@@ -316,9 +316,9 @@ class Methods:
     def status(self) -> dict:
         """State of daemon and simulation.
         Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
-            time_s, state_hash, real_time_factor, speed, tick_p99_s, seed, hand, object, job, gait: {active, phase,
-            finger, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop: tick, cause,
-            record, picture; or null), noise, clients, ....
+            time_s, state_hash, real_time_factor, speed, stepper, tick_p99_s, seed, hand, object, job, gait:
+            {active, phase, finger, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last
+            drop: tick, cause, record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})
 

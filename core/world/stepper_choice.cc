@@ -1,0 +1,56 @@
+#include "core/world/stepper_choice.h"
+
+#include <array>
+#include <cstdio>
+
+#include "core/hand/kinematics.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kDuration = 0.3;    // [s]: most hands have closed by then
+constexpr double kStiffness = 1.0;   // [N m/rad] towards the closed posture
+constexpr double kAgreement = 0.05;  // of the motion
+
+struct Trial {
+  JointVector q;
+  std::string fault;
+};
+
+Trial Close(const LoadedScenario& model, WorldConfig config, Stepper stepper) {
+  const Scenario& scenario = model.scenario;
+  config.stepper = stepper;
+  World world(model.hand, model.object, config, scenario.q_preshape, scenario.X_WO);
+  world.SetGravity(scenario.gravity_W);
+  KinematicsData kinematics;
+  for (int k = 0; k * config.dt < kDuration; ++k) {
+    const JointVector& q = world.state().q;
+    ForwardKinematics(model.hand, q, &kinematics);
+    world.SetTorque(GravityTorque(model.hand, kinematics, scenario.gravity_W) +
+                    kStiffness * (scenario.q_closed - q));
+    if (world.Step() != StepStatus::kOk) return {world.state().q, world.fault_message()};
+  }
+  return {world.state().q, ""};
+}
+
+}  // namespace
+
+StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& config) {
+  const Trial exact = Close(model, config, Stepper::kExact);
+  const Trial fast = Close(model, config, Stepper::kFast);
+  if (!fast.fault.empty())
+    return {exact.fault.empty() ? Stepper::kExact : Stepper::kFast,
+            exact.fault.empty() ? "the fast step failed: " + fast.fault
+                                : "both steps failed: " + fast.fault};
+  if (!exact.fault.empty()) return {Stepper::kFast, "the exact step failed: " + exact.fault};
+  if (model.hand.num_joints() == 0) return {Stepper::kFast, "the hand has no joints"};
+  const double moved = (exact.q - model.scenario.q_preshape).cwiseAbs().maxCoeff();
+  const double apart = (exact.q - fast.q).cwiseAbs().maxCoeff();
+  const bool agree = apart <= kAgreement * moved;
+  std::array<char, 128> text{};
+  std::snprintf(text.data(), text.size(), "the steps differ by %.2g rad in a motion of %.2g rad",
+                apart, moved);
+  return {agree ? Stepper::kFast : Stepper::kExact, text.data()};
+}
+
+}  // namespace regrasp
