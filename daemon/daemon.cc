@@ -52,6 +52,8 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
     command.parameter = FindParameter(name);
     command.value = value;
     SetParameter(&session.parameters, command);
+    const auto origin = config.origins.find("parameters." + name);
+    if (origin != config.origins.end()) service.parameter_origins[name] = origin->second;
   }
   return service;
 }

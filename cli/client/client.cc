@@ -161,10 +161,14 @@ std::optional<Client::Message> Client::ReadMessage(Clock::time_point deadline) {
   if (message.contains("error")) {
     const Json& error = message["error"];
     const int code = error.value("code", 0);
-    std::string hint;
-    if (error.contains("data") && error["data"].is_object()) hint = error["data"].value("hint", "");
+    std::string hint, param;
+    if (error.contains("data") && error["data"].is_object()) {
+      hint = error["data"].value("hint", "");
+      param = error["data"].value("param", "");
+    }
     answer.error.emplace(ExitCodeFor(code), error.value("message", "refused without a reason"),
                          hint, code);
+    answer.error->rpc_param = param;
     // Refused before its id was understood: of the last request.
     if (id.is_null()) answer.id = next_id_ - 1;
   } else if (!message.contains("result")) {

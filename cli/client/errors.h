@@ -20,7 +20,8 @@ class CliError : public std::runtime_error {
       : std::runtime_error(cause), code(exit_code), hint(std::move(next)), rpc_code(rpc) {}
   ExitCode code;
   std::string hint;
-  int rpc_code;  ///< JSON-RPC error code when the daemon refused, else 0
+  int rpc_code;           ///< JSON-RPC error code when the daemon refused, else 0
+  std::string rpc_param;  ///< the parameter it blames, or ""
 };
 
 /// Writes `error` to stderr: two lines of text, or with `json` one object {"error": {…}}.

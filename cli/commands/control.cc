@@ -6,6 +6,7 @@
 
 #include "cli/client/context.h"
 #include "cli/commands/jobs.h"
+#include "cli/commands/parameters.h"
 
 namespace regrasp::cli {
 namespace {
@@ -62,6 +63,10 @@ ExitCode Reset(Context& context, const Invocation& invocation) {
   context.Print(answer, [&] {
     context.out().Line(fmt::format("new run: object {}, seed {}", Plain(At(answer, "object")),
                                    Plain(At(answer, "seed"))));
+    const std::string changed = ChangedText(At(answer, "changed_parameters"));
+    if (!changed.empty())
+      context.out().Line(
+          fmt::format("changed parameters stay: {}    (regrasp param reset)", changed));
   });
   return kOk;
 }
@@ -118,42 +123,6 @@ ExitCode Push(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
-std::string Range(const Json& p) {
-  return fmt::format("{} … {}", Plain(At(p, "min")), Plain(At(p, "max")));
-}
-
-void PrintParameter(Output& out, const Json& p) {
-  const std::string unit = Plain(At(p, "unit"));
-  out.Line(fmt::format("{} = {}{}{}", out.Paint(Plain(At(p, "name")), Style::kBold),
-                       Plain(At(p, "value")), unit.empty() ? "" : " ", unit));
-  out.Line(fmt::format("  range   {}", Range(p)));
-  out.Line(fmt::format("  meaning {}", Plain(At(p, "description"))));
-  out.Line(fmt::format("  source  {}", Plain(At(p, "source"))));
-}
-
-ExitCode ParamList(Context& context, const Invocation&) {
-  const Json answer = context.client().Call("param.get", Json::object());
-  const Json& parameters = At(answer, "parameters");
-  context.PrintRows(answer, {parameters.begin(), parameters.end()}, [&] {
-    const bool verbose = context.options().verbose;
-    std::vector<std::string> titles = {"NAME", ">VALUE", "UNIT", "RANGE"};
-    if (verbose) titles.insert(titles.end(), {"MEANING", "SOURCE"});
-    Table table(titles);
-    for (const auto& p : parameters) {
-      table.Row({Plain(At(p, "name")), Plain(At(p, "value")), Plain(At(p, "unit")), Range(p),
-                 Plain(At(p, "description")), Plain(At(p, "source"))});
-    }
-    context.out().Add(table.Text(context.out()));
-  });
-  return kOk;
-}
-
-ExitCode ParamGetOrSet(Context& context, const Invocation& invocation) {
-  const Json answer = context.Call(invocation);
-  context.Print(answer, [&] { PrintParameter(context.out(), answer); });
-  return kOk;
-}
-
 }  // namespace
 
 std::vector<CommandSpec> ControlCommands() {
@@ -165,16 +134,12 @@ std::vector<CommandSpec> ControlCommands() {
   preset.sentence = "set all noise levels to a preset";
   preset.args.front().required = true;
   CommandSpec noise_off{"noise off", kGroup, "switch all noise off", nullptr, {}, NoiseOff};
-  CommandSpec param_get =
-      MethodCommand("param.get", kGroup, ParamGetOrSet, {.positional = {"name"}});
-  param_get.args.front().required = true;
-  param_get.sentence = "value, unit, range and source of a parameter";
   CommandSpec move = MethodCommand("move", kGroup, Move);
   move.args[0].flags = "--by";
   move.args[0].help = "shift of the object's centre along the axes of W, in mm, at most 50 long";
   move.args[1].flags = "--turn";
   move.args[1].help = "turn, a rotation vector in W, in degrees, at most 180 long";
-  return {
+  std::vector<CommandSpec> commands = {
       MethodCommand("grasp", kGroup, StartJob),
       MethodCommand("release", kGroup, StartJob),
       MethodCommand("rotate", kGroup, Rotate),
@@ -196,15 +161,9 @@ std::vector<CommandSpec> ControlCommands() {
       preset,
       noise_off,
       MethodCommand("push", kGroup, Push),
-      CommandSpec{"param list",
-                  kGroup,
-                  "every parameter; with -v its meaning and source",
-                  nullptr,
-                  {},
-                  ParamList},
-      param_get,
-      MethodCommand("param.set", kGroup, ParamGetOrSet, {.positional = {"name", "value"}}),
   };
+  for (CommandSpec& command : ParameterCommands()) commands.push_back(std::move(command));
+  return commands;
 }
 
 }  // namespace regrasp::cli

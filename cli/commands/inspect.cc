@@ -7,6 +7,7 @@
 
 #include "cli/client/context.h"
 #include "cli/commands/jobs.h"
+#include "cli/commands/parameters.h"
 #include "cli/top/top.h"
 
 namespace regrasp::cli {
@@ -55,6 +56,8 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const Json& noise = At(s, "noise");
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
+    const std::string changed = ChangedText(At(s, "changed_parameters"));
+    if (!changed.empty()) line("changed", changed + "    (regrasp param list --changed)");
     if (At(s, "recording").is_string())
       line("recording", Plain(At(s, "recording")) + "    (regrasp record stop)");
     const Json& incident = At(s, "incident");

@@ -98,6 +98,19 @@ std::uint64_t TextHash(std::string_view text) {
   return hasher.Digest();
 }
 
+/// The parameters that differ from their defaults: {NAME: {value, default}}.
+Json ChangedParameters(const SessionConfig& config) {
+  const Parameters defaults = DefaultParameters(config.model);
+  Json changed = Json::object();
+  for (const ParameterInfo& info : ParameterTable()) {
+    const Vector3d value = info.get(config.parameters), standard = info.get(defaults);
+    if (value != standard)
+      changed[std::string(info.name)] = {{"value", fields::ParameterJson(info, value)},
+                                         {"default", fields::ParameterJson(info, standard)}};
+  }
+  return changed;
+}
+
 void CheckFormat(const Json& json, const char* expected) {
   std::string format;
   Load{json}("format", format);
@@ -132,6 +145,7 @@ std::string ConfigText(const SessionConfig& config, int segment) {
   save("seed", config.seed);
   save("noise", config.noise);
   save("parameters", config.parameters);
+  save.json["changed_parameters"] = ChangedParameters(config);
   save("world", config.world);
   save("model", config.model);
   return save.json.dump();

@@ -177,6 +177,30 @@ constexpr std::array kParamGet = {
               .names = NameSource::kParameter,
               .default_text = "all parameters"},
 };
+constexpr std::array kParamList = {
+    ParamSpec{.name = "group",
+              .type = kEnum,
+              .sentence = "only parameters whose names begin so: gait",
+              .names = NameSource::kParameterGroup,
+              .default_text = "all"},
+    ParamSpec{.name = "changed",
+              .type = kBool,
+              .sentence = "only parameters that differ from their defaults",
+              .default_text = "false"},
+};
+constexpr std::array kParamLoad = {
+    ParamSpec{.name = "parameters",
+              .type = kObject,
+              .sentence = "values by name; all are set, or none where one is refused",
+              .required = true},
+};
+constexpr std::array kParamReset = {
+    ParamSpec{.name = "name",
+              .type = kEnum,
+              .sentence = "the parameter, or the group: gait",
+              .names = NameSource::kParameterOrGroup,
+              .default_text = "all parameters"},
+};
 constexpr std::array kParamSet = {
     ParamSpec{.name = "name",
               .type = kEnum,
@@ -377,9 +401,18 @@ constexpr std::array kMethods = {
                "preset and every level"},
     MethodSpec{"param.get", "param get", "values, units, ranges and sources of parameters",
                kParamGet, false,
-               "parameters: [{name, value, unit, min, max, description, source}], or one of them"},
+               "name, value, default, changed, type, unit, min, max, words, size, description, "
+               "source (of the value), default_source; without a name parameters: [...]"},
+    MethodSpec{"param.list", "param list", "every parameter, a group, or what has been changed",
+               kParamList, false, "parameters: [{name, value, ... as param.get}]"},
+    MethodSpec{"param.load", "param load", "set many parameters at once", kParamLoad, false,
+               "parameters: [{name, value, ... as param.get}] that were given; kept: {NAME: value} "
+               "of the others that differ from their defaults"},
+    MethodSpec{"param.reset", "param reset", "set parameters back to their defaults", kParamReset,
+               false, "parameters: [{name, value, before, ...}] that were changed before"},
     MethodSpec{"param.set", "param set", "change a parameter", kParamSet, false,
-               "{name, value, unit, min, max, description, source}"},
+               "name, value, default, changed, type, unit, min, max, words, size, description, "
+               "source, default_source"},
     MethodSpec{"pause", "pause", "stop the clock of the simulation", kNone, false, "paused, tick"},
     MethodSpec{"plot", "plot", "draw a picture into the output directory", kPlot, false,
                "file (name), path, bytes, tick"},
@@ -399,7 +432,7 @@ constexpr std::array kMethods = {
                "file, path, messages, bytes, dropped"},
     MethodSpec{"release", "release", "open the hand", kNone, true, "job"},
     MethodSpec{"reset", "reset", "start a new run; parameters and noise levels stay", kReset, false,
-               "seed, object"},
+               "seed, object, changed_parameters: {NAME: value} that stay"},
     MethodSpec{"resume", "resume", "let the clock of the simulation run again", kNone, false,
                "paused, tick"},
     MethodSpec{"rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
@@ -451,6 +484,8 @@ std::string_view Name(ParamType type) {
       return "number[3]";
     case kParameterValue:
       return "number, number[3], boolean or word";
+    case kObject:
+      return "object";
     case kIntegerPair:
       return "integer[2]";
   }
@@ -467,6 +502,10 @@ std::string_view Name(NameSource source) {
       return "object";
     case NameSource::kParameter:
       return "parameter";
+    case NameSource::kParameterGroup:
+      return "group of parameters";
+    case NameSource::kParameterOrGroup:
+      return "parameter or group";
   }
   return "";
 }

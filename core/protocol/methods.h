@@ -28,13 +28,21 @@ enum class ParamType : std::uint8_t {
   kEnum,            ///< a string out of `values`, or of the names that `names` refers to
   kVector3,         ///< three numbers
   kParameterValue,  ///< a number, three numbers, true, false or a word
+  kObject,          ///< names and values
   kIntegerPair,     ///< two integers
 };
 std::string_view Name(ParamType type);  ///< as `describe` prints it: "integer", "number[3]", ...
 
 /// Names that only a running daemon knows.
-enum class NameSource : std::uint8_t { kNone, kFinger, kObject, kParameter };
-std::string_view Name(NameSource source);  ///< "", "finger", "object", "parameter"
+enum class NameSource : std::uint8_t {
+  kNone,
+  kFinger,
+  kObject,
+  kParameter,
+  kParameterGroup,    ///< what stands before the point in names of parameters
+  kParameterOrGroup,  ///< both
+};
+std::string_view Name(NameSource source);  ///< "", "finger", "object", ...
 
 struct ParamSpec {
   std::string_view name;

@@ -63,6 +63,8 @@ struct ParameterInfo {
   void (*set)(Parameters*, const Vector3d&) = nullptr;  ///< the value must be allowed
 
   int size() const { return type == ParameterType::kVector ? 3 : 1; }
+  /// What stands before the point: "exploration".
+  std::string_view group() const { return name.substr(0, name.find('.')); }
 };
 
 struct LoadedScenario;

@@ -29,6 +29,7 @@ std::vector<Field> Fields(RunTopic topic) {
               {"seed", "integer", "of start and noise"},
               {"noise", "object", "levels at tick 0"},
               {"parameters", "object", "values at tick 0"},
+              {"changed_parameters", "object", "those that differ from their defaults"},
               {"world", "object", "time step and stepper"},
               {"model", "object", "hand, object, scenario"}};
     case RunTopic::kCommands:

@@ -16,8 +16,6 @@ Outcome Grasp(Service&, const Params&, Client&);
 Outcome Move(Service&, const Params&, Client&);
 Outcome NoiseGet(Service&, const Params&, Client&);
 Outcome NoiseSet(Service&, const Params&, Client&);
-Outcome ParamGet(Service&, const Params&, Client&);
-Outcome ParamSet(Service&, const Params&, Client&);
 Outcome Pause(Service&, const Params&, Client&);
 Outcome Push(Service&, const Params&, Client&);
 Outcome Release(Service&, const Params&, Client&);
@@ -26,6 +24,13 @@ Outcome Resume(Service&, const Params&, Client&);
 Outcome Rotate(Service&, const Params&, Client&);
 Outcome Step(Service&, const Params&, Client&);
 Outcome Stop(Service&, const Params&, Client&);
+
+// parameters.cc
+Outcome ParamGet(Service&, const Params&, Client&);
+Outcome ParamList(Service&, const Params&, Client&);
+Outcome ParamLoad(Service&, const Params&, Client&);
+Outcome ParamReset(Service&, const Params&, Client&);
+Outcome ParamSet(Service&, const Params&, Client&);
 
 // inspect.cc
 Outcome Contacts(Service&, const Params&, Client&);

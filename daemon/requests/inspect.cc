@@ -45,6 +45,7 @@ Json StatusJson(Service& service) {
       {"incident", service.incident_summary()},
       {"gait", GaitJson(frame.gait, service.hand())},
       {"noise", NoiseJson(service.accepted.noise)},
+      {"changed_parameters", service.ChangedParameters()},
       {"recording", service.recorder ? Json(service.recorder->path().filename().string()) : Json()},
       {"clients", service.host().clients()},
       {"backlog", service.control().backlog()},

@@ -61,12 +61,13 @@ void CheckWord(const ParamSpec& spec, const JsonIn& value, const NameLookup& nam
   error.param = spec.name;
   error.hint = DidYouMean(word, allowed);
   // A finger is part of the grammar; models and parameters are things that may or may not be there.
-  const bool thing = spec.names == NameSource::kObject || spec.names == NameSource::kParameter;
+  const bool finger = spec.names == NameSource::kFinger || spec.names == NameSource::kNone;
+  const bool thing = !finger;
   error.code = thing ? ErrorCode::kNotFound : ErrorCode::kInvalidParams;
   error.message = thing ? fmt::format("no {} named {}", Name(spec.names), Shown(value))
                         : fmt::format("{} = {} is not allowed", spec.name, Shown(value));
-  if (error.hint.empty() && spec.names == NameSource::kParameter)
-    error.hint = "call param.get for the list";
+  if (error.hint.empty() && thing && spec.names != NameSource::kObject)
+    error.hint = "call param.list for the list";
   error.allowed = std::move(allowed);
   throw RpcException(std::move(error));
 }
@@ -84,6 +85,10 @@ void CheckValue(const ParamSpec& spec, const JsonIn& value, const NameLookup& na
     case ParamType::kParameterValue:
       if (!ToGivenValue(value))
         Refuse(spec, fmt::format("{} = {}: expected {}", spec.name, Shown(value), Name(spec.type)));
+      return;
+    case ParamType::kObject:
+      if (!value.is_object())
+        Refuse(spec, fmt::format("{} = {}: expected an object", spec.name, Shown(value)));
       return;
     case ParamType::kBool:
       if (!value.is_boolean())
@@ -176,6 +181,8 @@ Vector3d Params::Vector(std::string_view name, const Vector3d& fallback) const {
   if (!value) return fallback;
   return {(*value)[0].get<double>(), (*value)[1].get<double>(), (*value)[2].get<double>()};
 }
+
+const JsonIn& Params::Object(std::string_view name) const { return *Find(name); }
 
 GivenValue Params::Given(std::string_view name) const { return *ToGivenValue(*Find(name)); }
 

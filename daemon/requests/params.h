@@ -30,6 +30,8 @@ class Params {
   bool Bool(std::string_view name, bool fallback) const;
   std::string String(std::string_view name, const std::string& fallback = {}) const;
   Vector3d Vector(std::string_view name, const Vector3d& fallback = Vector3d::Zero()) const;
+  /// A required kObject.
+  const JsonIn& Object(std::string_view name) const;
   /// A kParameterValue.
   GivenValue Given(std::string_view name) const;
   std::pair<int, int> Pair(std::string_view name) const;

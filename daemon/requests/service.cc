@@ -11,7 +11,7 @@
 namespace regrasp {
 namespace {
 
-constexpr std::size_t kMaxBacklog = 64;    // commands that wait for a tick
+constexpr std::size_t kMaxBacklog = 200;   // commands that wait for a tick; every parameter at once fits
 constexpr std::size_t kEventsKept = 1000;  // for `events`
 constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
 
@@ -197,6 +197,15 @@ std::vector<std::string> Service::Names(NameSource source) const {
     case NameSource::kParameter:
       for (const ParameterInfo& info : ParameterTable()) names.emplace_back(info.name);
       break;
+    case NameSource::kParameterGroup:
+      for (const ParameterInfo& info : ParameterTable())
+        if (names.empty() || names.back() != info.group()) names.emplace_back(info.group());
+      break;
+    case NameSource::kParameterOrGroup:
+      names = Names(NameSource::kParameterGroup);
+      for (const ParameterInfo& info : ParameterTable())
+        if (info.name != info.group()) names.emplace_back(info.name);
+      break;
   }
   return names;
 }
@@ -226,6 +235,39 @@ void Service::CheckAllowed(CommandType type) const {
                      verdict.hint);
 }
 
+Parameters Service::DefaultValues() const {
+  Parameters defaults = DefaultParameters(config_.control.session.model);
+  return ParametersAfterReset(defaults, accepted.object.get());
+}
+
+Json Service::ChangedParameters() const {
+  const Parameters defaults = DefaultValues();
+  Json changed = Json::object();
+  for (const ParameterInfo& info : ParameterTable())
+    if (info.get(accepted.parameters) != info.get(defaults))
+      changed[std::string(info.name)] = ParameterValueJson(info, info.get(accepted.parameters));
+  return changed;
+}
+
+std::string Service::SourceOfValue(const ParameterInfo& info) const {
+  if (info.get(accepted.parameters) == info.get(DefaultValues())) return std::string(info.source);
+  const auto origin = config_.parameter_origins.find(std::string(info.name));
+  return origin != config_.parameter_origins.end() ? "configuration, " + origin->second
+                                                   : "set while running";
+}
+
+std::uint64_t Service::SetParameters(const std::vector<Command>& commands) {
+  CheckRoom(commands.size());
+  std::uint64_t barrier = 0;
+  for (const Command& command : commands) {
+    barrier = PostCommand(command);
+    SetParameter(&accepted.parameters, command);
+    config_.parameter_origins.erase(
+        std::string(ParameterTable()[static_cast<std::size_t>(command.parameter)].name));
+  }
+  return barrier;
+}
+
 std::uint64_t Service::Post(ControlRequest request) {
   const std::uint64_t number = control_.Post(std::move(request));
   if (number == 0)
@@ -235,13 +277,17 @@ std::uint64_t Service::Post(ControlRequest request) {
 
 std::uint64_t Service::PostCommand(Command command) {
   CheckNotRestoring();
-  if (control_.backlog() >= kMaxBacklog)
-    throw RpcException(ErrorCode::kBusy,
-                       fmt::format("{} commands are waiting for the next tick", kMaxBacklog),
-                       accepted.paused ? "regrasp step 1" : "try again in a moment");
+  CheckRoom(1);
   ControlRequest request;
   request.command = std::move(command);
   return Post(std::move(request));
+}
+
+void Service::CheckRoom(std::size_t commands) const {
+  if (control_.backlog() + commands > kMaxBacklog)
+    throw RpcException(ErrorCode::kBusy,
+                       fmt::format("{} commands are waiting for the next tick", kMaxBacklog),
+                       accepted.paused ? "regrasp step 1" : "try again in a moment");
 }
 
 }  // namespace regrasp

@@ -54,6 +54,8 @@ struct ServiceConfig {
   std::vector<std::filesystem::path> search_path;  ///< for `reset {object}`
   LoadOptions load;                                ///< for `reset {object}`
   std::filesystem::path output_dir;                ///< for pictures
+  /// Where parameters that the configuration sets stand: "FILE:LINE", by name.
+  std::map<std::string, std::string> parameter_origins;
 };
 
 /// Timers and threads that handlers need; the server provides them.
@@ -131,6 +133,16 @@ class Service {
     bool paused = false;
   } accepted;
 
+  /// What the parameters are unless somebody changes them: built in, or of the present models.
+  Parameters DefaultValues() const;
+  /// The parameters that differ from that: {NAME: value}.
+  Json ChangedParameters() const;
+  /// Where the present value comes from: the table's source while it is the default.
+  std::string SourceOfValue(const ParameterInfo& info) const;
+  /// Checks nothing; the commands are queued together or, with busy thrown, not at all. Returns the
+  /// request after which all have taken effect, 0 where there are none.
+  std::uint64_t SetParameters(const std::vector<Command>& commands);
+
   /// Throws busy, bad state or simulation fault unless the command may be given now.
   void CheckAllowed(CommandType type) const;
   void CheckNotFaulted() const;
@@ -141,6 +153,8 @@ class Service {
   /// The same for a command that takes effect at a tick; refuses to let too many pile up while
   /// paused.
   std::uint64_t PostCommand(Command command);
+  /// Throws busy where so many more commands may not wait for the next tick.
+  void CheckRoom(std::size_t commands) const;
 
  private:
   void TakeIn(const JournalNews& news);

@@ -56,11 +56,6 @@ Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
           }};
 }
 
-Json ParamEntry(Service& service, int index) {
-  return ParameterJson(ParameterTable()[static_cast<std::size_t>(index)],
-                       service.accepted.parameters);
-}
-
 }  // namespace
 
 Outcome Grasp(Service& service, const Params&, Client&) {
@@ -214,7 +209,9 @@ std::uint64_t PostReset(Service& service, std::uint64_t seed,
 }
 
 Json ResetAnswer(const Service& service) {
-  return {{"seed", service.accepted.seed}, {"object", service.accepted.object->name}};
+  return {{"seed", service.accepted.seed},
+          {"object", service.accepted.object->name},
+          {"changed_parameters", service.ChangedParameters()}};
 }
 
 /// The file is read by the worker thread: a mesh may take seconds.
@@ -297,36 +294,6 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
   const std::uint64_t barrier = service.PostCommand(std::move(command));
   service.accepted.noise = levels;
   return {.result = NoiseJson(levels), .barrier = barrier};
-}
-
-Outcome ParamGet(Service& service, const Params& params, Client&) {
-  if (params.Has("name"))
-    return {.result = ParamEntry(service, FindParameter(params.String("name")))};
-  Json list = Json::array();
-  for (const ParameterInfo& info : ParameterTable())
-    list.push_back(ParameterJson(info, service.accepted.parameters));
-  return {.result = {{"parameters", std::move(list)}}};
-}
-
-Outcome ParamSet(Service& service, const Params& params, Client&) {
-  service.CheckAllowed(CommandType::kParameter);
-  const int index = FindParameter(params.String("name"));
-  Command command = Of(CommandType::kParameter);
-  command.parameter = index;
-  try {
-    command.value = ReadParameterValue(ParameterTable()[static_cast<std::size_t>(index)],
-                                       params.Given("value"));
-  } catch (const ParameterError& e) {
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                e.what(),
-                                e.nearest.empty() ? fmt::format("allowed: {}", e.allowed)
-                                                  : fmt::format("did you mean '{}'?", e.nearest),
-                                "value",
-                                {}});
-  }
-  const std::uint64_t barrier = service.PostCommand(command);
-  SetParameter(&service.accepted.parameters, command);
-  return {.result = ParamEntry(service, index), .barrier = barrier};
 }
 
 }  // namespace regrasp::handlers

@@ -293,17 +293,4 @@ Json ParameterValueJson(const ParameterInfo& info, const Vector3d& value) {
   return {};
 }
 
-Json ParameterJson(const ParameterInfo& info, const Parameters& parameters) {
-  return {{"name", info.name},
-          {"value", ParameterValueJson(info, info.get(parameters))},
-          {"type", Name(info.type)},
-          {"unit", info.unit},
-          {"min", info.min},
-          {"max", info.max},
-          {"words", info.words},
-          {"size", info.size()},
-          {"description", info.meaning},
-          {"source", info.source}};
-}
-
 }  // namespace regrasp

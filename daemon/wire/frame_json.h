@@ -28,7 +28,5 @@ Json NoiseJson(const NoiseLevels& levels);
 Json JobJson(const JobRecord& job, const HandModel& hand);
 /// A parameter's value as `param.set` takes it: a number, three, true, false or a word.
 Json ParameterValueJson(const ParameterInfo& info, const Vector3d& value);
-/// One row of the parameter table with its value.
-Json ParameterJson(const ParameterInfo& info, const Parameters& parameters);
 
 }  // namespace regrasp
