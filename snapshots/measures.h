@@ -2,6 +2,8 @@
 
 /// Columns of numbers taken out of a history. Internal to snapshots/.
 
+#include <fmt/format.h>
+
 #include <functional>
 #include <limits>
 #include <span>
@@ -50,28 +52,16 @@ inline int ExploringFinger(const Frame& frame) {
   return frame.exploration.active ? frame.exploration.finger : -1;
 }
 
-/// Axis label of the stability measure that is active in these frames: the one whose values it has.
+/// Axis label of the stability measure that was selected in these frames; without its symbol where
+/// it changed meanwhile.
 inline std::string StabilityLabel(std::span<const Frame> frames) {
-  using Field = double StabilityFrame::*;
-  struct Measure {
-    Field field;
-    const char* label;
-  };
-  static constexpr Measure kMeasures[] = {
-      {&StabilityFrame::min_singular_value, "σ\u2098\u1d62\u2099(G)"},
-      {&StabilityFrame::epsilon, "ε (Ferrari\u2013Canny)"},
-      {&StabilityFrame::sqrt_det, "√det(G Gᵀ)"},
-      {&StabilityFrame::isotropy, "σ\u2098\u1d62\u2099/σ\u2098\u2090\u2093"}};
-  for (const Measure& measure : kMeasures) {
-    bool same = true, seen = false;
-    for (const Frame& frame : frames) {
-      if (frame.stability.active == 0) continue;
-      seen = true;
-      same = same && frame.stability.*measure.field == frame.stability.active;
-    }
-    if (seen && same) return std::string("stability  ") + measure.label;
-  }
-  return "stability";
+  if (frames.empty()) return "stability";
+  const Measure measure = frames.back().stability.measure;
+  for (const Frame& frame : frames)
+    if (frame.stability.measure != measure) return "stability";
+  const MeasureInfo& info = InfoOf(measure);
+  return fmt::format("stability  {}{}{}{}", info.label, info.unit.empty() ? "" : " [", info.unit,
+                     info.unit.empty() ? "" : "]");
 }
 
 }  // namespace regrasp

@@ -141,9 +141,9 @@ void PrintQuality(Output& out, const Json& q) {
   out.Line(fmt::format("load margin {}{}{} N", out.Rho(),
                        std::string(static_cast<std::size_t>(10 - DisplayWidth(out.Rho())), ' '),
                        Fixed(At(q, "load_margin_n"), 3)));
-  for (const char* name : {"min_singular_value", "epsilon", "sqrt_det", "isotropy", "volume"}) {
-    if (At(q, name).is_number())
-      out.Line(fmt::format("{:<22}{:.4g}", name, At(q, name).get<double>()));
+  for (const Json& name : At(q, "measures")) {
+    const Json& value = At(q, Plain(name).c_str());
+    if (value.is_number()) out.Line(fmt::format("{:<22}{:.4g}", Plain(name), value.get<double>()));
   }
   out.Line();
   const auto fingers = Named(At(q, "fingers"), "finger");

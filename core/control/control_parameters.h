@@ -1,20 +1,8 @@
 #pragma once
 
-#include <array>
-#include <string_view>
+#include "core/quality/measures.h"
 
 namespace regrasp {
-
-/// Which stability measure `switched`, `stability` and `combined` use (values of
-/// control.stability_measure).
-enum class StabilityMeasure : int {
-  kMinSingularValue = 0,
-  kEpsilon = 1,
-  kSqrtDet = 2,
-  kIsotropy = 3
-};
-inline constexpr std::array<std::string_view, 4> kStabilityMeasureNames = {
-    "min_singular_value", "epsilon", "sqrt_det", "isotropy"};
 
 /// Constants of the sensing filters, the object-level force control and the joint control. Unit,
 /// range and source of each stand in the parameter table (core/session/parameters.cc).
@@ -57,22 +45,31 @@ struct ControlParameters {
       0.020;                        ///< a holding finger without contact for so long moves in again
   double reapproach_speed = 0.020;  ///< [m/s]
   double reapproach_force = 0.15;   ///< [N]
+  double contact_lost_s = 0.020;    ///< without contact for so long a finger carries nothing
   // Sliding finger: hybrid position/force control.
   double slide_stiffness = 300;    ///< tangential [N/m]
   double slide_force_limit = 0.8;  ///< largest tangential force [N]
   double slide_friction_share =
       0.6;  ///< share of the sliding finger's normal force assumed to drag on the object
+  double slide_slow_speed = 0.001;     ///< below it the friction feedforward fades out [m/s]
   double normal_force_integral = 2.0;  ///< [1/s]
   // Grasping.
   double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]
   double close_force = 0.15;        ///< a finger that has touched waits with this force [N]
+  double touch_s = 0.005;           ///< contact for so long is a touch
+  double search_s = 2.0;            ///< after the closed posture contact is sought so long ...
+  double search_speed = 0.02;       ///< ... by moving towards the object [m/s]
   double grip_ramp_s = 0.3;         ///< from waiting force to grip
   double stand_in_release_s = 0.5;  ///< after the ramp the stand-in lets go
   double settle_s = 0.7;            ///< then so long until `holding`
   // Stability.
-  StabilityMeasure stability_measure = StabilityMeasure::kMinSingularValue;
+  Measure stability_measure = Measure::kMinSingularValue;  ///< what stability means
   double stability_threshold = 0.30;  ///< `switched`: below it stability is maximised
-  double drop_distance = 0.030;       ///< object this far from its reference: dropped [m]
+  double drop_contact_s = 0.25;       ///< fewer than two contacts for so long: dropped
+  double release_s = 0.5;             ///< from letting go to idle
+  double release_pull = 12.0;     ///< every finger leaves with this force, so that none drags [N]
+  double release_pull_s = 0.010;  ///< ... for so long
+  double drop_distance = 0.030;   ///< object this far from its reference: dropped [m]
 };
 
 }  // namespace regrasp

@@ -7,8 +7,6 @@
 namespace regrasp {
 namespace {
 
-constexpr int kLostTicks = 20;  // a finger without contact for so many ticks carries nothing
-
 /// Weight of the new sample in a first-order low pass.
 double Gain(double dt, double time_constant) { return dt / (time_constant + dt); }
 
@@ -75,6 +73,7 @@ const Estimate& StateEstimator::Update(const SensorReading& reading,
     } else {
       ++f.ticks_without_contact;
     }
+    f.lost = f.ticks_without_contact * dt_ > parameters.contact_lost_s - 0.5 * dt_;
     f.p_WF = FingertipCentre(*hand_, e.kinematics, static_cast<int>(i));
     if (f.ever_in_contact) {
       const Vector3d n_L = filter.n_L.normalized();
@@ -115,7 +114,7 @@ Grasp GraspOf(const Estimate& estimate, FingerSet fingers, double mu) {
   Grasp grasp;
   for (int i : fingers) {
     const FingerEstimate& f = estimate.fingers[i];
-    if (!f.ever_in_contact || f.ticks_without_contact >= kLostTicks) continue;
+    if (!f.ever_in_contact || f.lost) continue;
     grasp.push_back({f.p_WC - estimate.p_WO, -f.normal_W, mu});
   }
   return grasp;

@@ -17,6 +17,7 @@ namespace regrasp {
 struct FingerEstimate {
   bool in_contact = false;       ///< this tick's reading
   bool ever_in_contact = false;  ///< p_WC and normal_W hold something
+  bool lost = false;             ///< without contact for control.contact_lost_s: carries nothing
   int ticks_without_contact = 0;
   int ticks_in_contact = 0;
   Vector3d p_WC =
@@ -32,6 +33,7 @@ struct FingerEstimate {
   void Fields(V& v) {
     v("in_contact", in_contact);
     v("ever_in_contact", ever_in_contact);
+    v("lost", lost);
     v("ticks_without_contact", ticks_without_contact);
     v("ticks_in_contact", ticks_in_contact);
     v("p_WC", p_WC);

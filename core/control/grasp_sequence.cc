@@ -1,17 +1,9 @@
 #include "core/control/grasp_sequence.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace regrasp {
-namespace {
-
-constexpr int kTouchTicks = 5;  // consecutive ticks of contact that count as a touch
-constexpr double kSearch_s =
-    2.0;  // after the closed posture is reached, search so long for contact ...
-constexpr double kSearchSpeed = 0.02;  // ... moving the fingertip towards the object [m/s]
-
-}  // namespace
-
 void GraspSequence::Start(const Estimate& estimate) {
   phase_ = Phase::kClose;
   ticks_ = 0;
@@ -33,11 +25,12 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
     const double travel = (q_closed - q_start_).cwiseAbs().maxCoeff();
     const double duration = travel / parameters.close_speed;
     const double s = std::min(1.0, time / duration);
+    const auto touch_ticks = std::lround(parameters.touch_s / tick.dt);
     int touched = 0;
     for (int i = 0; i < num_fingers; ++i) {
       const FingerEstimate& f = estimate.fingers[i];
       FingerTask& task = (*tasks)[i];
-      if (!touched_[i] && f.in_contact && f.ticks_in_contact >= kTouchTicks) touched_[i] = true;
+      if (!touched_[i] && f.in_contact && f.ticks_in_contact >= touch_ticks) touched_[i] = true;
       touched += touched_[i];
       if (touched_[i]) {
         task.mode = FingerMode::kTouch;
@@ -48,7 +41,7 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
         const Vector3d way = estimate.p_WO - f.p_WF;
         if (task.mode != FingerMode::kReach) task.p_target_W = f.p_WF;
         task.mode = FingerMode::kReach;
-        task.v_target_W = kSearchSpeed * way.normalized();
+        task.v_target_W = parameters.search_speed * way.normalized();
         task.p_target_W += task.v_target_W * tick.dt;
         continue;
       }
@@ -60,7 +53,7 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
     }
     progress_ = 0.6 * s;
     const bool all = touched == num_fingers;
-    const bool late = time > duration + kSearch_s;
+    const bool late = time > duration + parameters.search_s;
     if (all || (late && touched >= 3)) {
       phase_ = Phase::kGrip;
       ticks_ = 0;

@@ -8,9 +8,6 @@
 namespace regrasp {
 namespace {
 
-// Below this speed the friction feedforward of a sliding finger fades out [m/s].
-constexpr double kSlowSlide = 0.001;
-
 /// Damped pseudo-inverse J⁺ = Jᵀ (J Jᵀ + lambda² I)⁻¹, n x 3.
 using FingerPinv = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxFingerJoints, 3>;
 FingerPinv DampedPinv(const FingerJacobian& J, double lambda) {
@@ -56,7 +53,7 @@ Vector3d HybridController::SlideForce(const FingerEstimate& finger, const Finger
   // Friction is overcome by feedforward; the spring about the reference only corrects.
   const Vector3d v = TangentPart(task.v_W, finger.normal_W);
   const Vector3d friction =
-      parameters.slide_friction_share * task.force * v / (v.norm() + kSlowSlide);
+      parameters.slide_friction_share * task.force * v / (v.norm() + parameters.slide_slow_speed);
   return friction + parameters.slide_stiffness * error - normal_force * finger.normal_W;
 }
 

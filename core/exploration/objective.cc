@@ -1,6 +1,8 @@
 #include "core/exploration/objective.h"
 
-#include "core/quality/stability.h"
+#include <cassert>
+
+#include "core/quality/measures.h"
 
 namespace regrasp {
 namespace {
@@ -9,33 +11,13 @@ constexpr double kHysteresis = 1.05;
 
 }  // namespace
 
-std::string_view Name(Criterion criterion) {
-  switch (criterion) {
-    case Criterion::kManipulability:
-      return "manipulability";
-    case Criterion::kStability:
-      return "stability";
-    case Criterion::kSwitched:
-      return "switched";
-    case Criterion::kCombined:
-      return "combined";
-  }
-  return "";
-}
-
 double GraspStability(const Estimate& estimate, FingerSet fingers,
                       const ControlParameters& parameters) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
-  const SingularMeasures m =
-      ComputeSingularMeasures({grasp.data(), grasp.size()}, estimate.object_scale);
-  switch (parameters.stability_measure) {
-    case StabilityMeasure::kSqrtDet:
-      return m.sqrt_det;
-    case StabilityMeasure::kIsotropy:
-      return m.isotropy;
-    default:
-      return m.min_singular_value;
-  }
+  MeasureInput input({grasp.data(), grasp.size()}, estimate.object_scale, kMonitorEdges);
+  const MeasureInfo& measure = InfoOf(parameters.stability_measure);
+  assert(measure.cost == MeasureCost::kTick);
+  return measure.compute(input);
 }
 
 ObjectiveValue Objective(Criterion criterion, int finger, FingerSet fingers,

@@ -4,14 +4,14 @@
 #include <array>
 #include <numbers>
 
+#include "core/exploration/criterion.h"
+#include "core/exploration/exploration_parameters.h"
+
 namespace regrasp {
 namespace {
 
 using enum ParamType;
 
-constexpr std::array<std::string_view, 4> kCriteria = {"manipulability", "stability", "switched",
-                                                       "combined"};
-constexpr std::array<std::string_view, 2> kEstimators = {"least_squares", "secant"};
 constexpr std::array<std::string_view, 5> kPresets = {"off", "fine", "paper", "coarse", "taxel"};
 constexpr std::array<std::string_view, 6> kPlots = {"comparison", "contacts", "gait",
                                                     "incident",   "quality",  "scene"};
@@ -60,12 +60,12 @@ constexpr std::array kExplore = {
     ParamSpec{.name = "criterion",
               .type = kEnum,
               .sentence = "what it maximises",
-              .values = kCriteria,
+              .values = kCriterionNames,
               .default_text = "manipulability"},
     ParamSpec{.name = "estimator",
               .type = kEnum,
               .sentence = "how it estimates the gradient; secant is the rule as printed",
-              .values = kEstimators,
+              .values = kEstimatorNames,
               .default_text = "least_squares"},
     ParamSpec{.name = "seed",
               .type = kInteger,
@@ -420,7 +420,8 @@ constexpr std::array kMethods = {
                "force_n, duration_s"},
     MethodSpec{
         "quality", "quality", "quality of the grasp", kNone, false,
-        "tick, time_s, criterion, stability, threshold, load_margin_n, measures, torque_scale_m "
+        "tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, "
+        "measures: [NAME] and the value of each by its name, torque_scale_m "
         "(mean distance of the contacts from the object's centre; torques are divided by "
         "it), fingers: {NAME: {manipulability, load_margin_without_n, joint_limit_margin_rad}}"},
     MethodSpec{"record.list", "record list", "the run files in the output directory", kNone, false,

@@ -65,6 +65,17 @@ Verdict Check(CommandType type, SessionState state, bool job_running) {
   return {};
 }
 
+Verdict CheckMeasure(const Parameters& parameters, JobMethod method, Criterion criterion) {
+  const bool exploring_gait =
+      method == JobMethod::kRotate && parameters.gait.mode == GaitMode::kExploring;
+  if (exploring_gait) criterion = Criterion::kSwitched;  // as its regrasps do
+  if (!exploring_gait && method != JobMethod::kExplore) return {};
+  if (MayMaximise(criterion, parameters.control)) return {};
+  return {Verdict::Kind::kBadState,
+          "the selected stability measure is too slow for a tick: exploration cannot maximise it",
+          "regrasp param reset control.stability_measure"};
+}
+
 void Session::Impl::Enter(SessionState next) {
   if (state == next) return;
   state = next;
@@ -132,7 +143,11 @@ Verdict Session::Impl::StartActivity(const Command& command, JobMethod method) {
 Verdict Session::Impl::Apply(const Command& command) {
   const Verdict verdict = Check(command.type, state, job_running());
   if (verdict.kind != Verdict::Kind::kAllowed) return Refuse(command, verdict);
-  if (const auto method = JobMethodOf(command.type)) return StartActivity(command, *method);
+  if (const auto method = JobMethodOf(command.type)) {
+    const Verdict fit = CheckMeasure(parameters, *method, command.criterion);
+    if (fit.kind != Verdict::Kind::kAllowed) return Refuse(command, fit);
+    return StartActivity(command, *method);
+  }
   switch (command.type) {
     case CommandType::kStop:
       StopJob();
@@ -147,9 +162,15 @@ Verdict Session::Impl::Apply(const Command& command) {
     case CommandType::kPush:
       Push(command);
       break;
-    case CommandType::kParameter:
+    case CommandType::kParameter: {
+      Parameters next = parameters;
+      ParameterTable()[command.parameter].set(&next, command.value);
+      const Verdict fit =
+          job_running() ? CheckMeasure(next, job.method, job.explore.criterion) : Verdict();
+      if (fit.kind != Verdict::Kind::kAllowed) return Refuse(command, fit);
       SetParameter(command);
       break;
+    }
     case CommandType::kBranch:
       Branch(command);
       break;

@@ -3,11 +3,13 @@
 /// One tick's worth of everything that leaves the session: for status, streams, pictures and logs.
 /// Trivially copyable, no pointers.
 
+#include <array>
 #include <cstdint>
 
 #include "core/common/fixed_vector.h"
 #include "core/common/frames.h"
 #include "core/common/limits.h"
+#include "core/quality/measures.h"
 #include "core/sensing/noise.h"
 #include "core/session/job.h"
 
@@ -54,18 +56,19 @@ struct FingerFrame {
 
 /// Stability of the grasp formed by the holding fingers, from sensed contacts.
 struct StabilityFrame {
-  double active = 0;     ///< the measure selected by control.stability_measure
+  Measure measure = Measure::kMinSingularValue;  ///< selected by control.stability_measure
+  double active = 0;                             ///< its value
   double threshold = 0;  ///< below it, `switched` maximises stability instead of manipulability
-  double min_singular_value = 0, epsilon = 0, sqrt_det = 0, isotropy = 0;
-  double load_margin = 0;  ///< rho of all fingers in contact [N]
+  std::array<double, kNumFrameMeasures> values{};  ///< by Measure
+  double load_margin = 0;                          ///< rho of all fingers in contact [N]
+
+  double of(Measure which) const { return values[static_cast<std::size_t>(which)]; }
   template <typename V>
   void Fields(V& v) {
+    v("measure", measure, static_cast<Measure>(kNumFrameMeasures - 1));
     v("active", active);
     v("threshold", threshold);
-    v("min_singular_value", min_singular_value);
-    v("epsilon", epsilon);
-    v("sqrt_det", sqrt_det);
-    v("isotropy", isotropy);
+    v("values", values);
     v("load_margin", load_margin, kUnbounded);
   }
 };

@@ -1,7 +1,6 @@
 #include "core/session/quality_monitor.h"
 
 #include "core/quality/load_margin.h"
-#include "core/quality/stability.h"
 
 namespace regrasp {
 
@@ -9,10 +8,10 @@ void QualityMonitor::Update(const Estimate& estimate, FingerSet fingers, const V
                             const ControlParameters& parameters, double dt) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
   const double scale = estimate.object_scale;
-  const SingularMeasures m = ComputeSingularMeasures({grasp.data(), grasp.size()}, scale);
-  stability_.min_singular_value = m.min_singular_value;
-  stability_.sqrt_det = m.sqrt_det;
-  stability_.isotropy = m.isotropy;
+  MeasureInput input({grasp.data(), grasp.size()}, scale, kEpsilonEdges);
+  for (std::size_t i = 0; i < kNumFrameMeasures; ++i)
+    if (kMeasureTable[i].cost == MeasureCost::kTick)
+      stability_.values[i] = kMeasureTable[i].compute(input);
   stability_.threshold = parameters.stability_threshold;
 
   if (++tick_ >= kMarginInterval) {
@@ -23,20 +22,8 @@ void QualityMonitor::Update(const Estimate& estimate, FingerSet fingers, const V
   }
   SmoothMargins(dt / (parameters.margin_filter_s + dt));
 
-  switch (parameters.stability_measure) {
-    case StabilityMeasure::kMinSingularValue:
-      stability_.active = m.min_singular_value;
-      break;
-    case StabilityMeasure::kEpsilon:
-      stability_.active = stability_.epsilon;
-      break;
-    case StabilityMeasure::kSqrtDet:
-      stability_.active = m.sqrt_det;
-      break;
-    case StabilityMeasure::kIsotropy:
-      stability_.active = m.isotropy;
-      break;
-  }
+  stability_.measure = parameters.stability_measure;
+  stability_.active = stability_.of(stability_.measure);
 }
 
 void QualityMonitor::UpdateMargin(const Estimate& estimate, FingerSet fingers,
@@ -82,7 +69,7 @@ void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale) {
   }
   ++epsilon_steps_;
   if (!epsilon_.Step(kEpsilonFacets)) return;
-  stability_.epsilon = epsilon_.result();
+  stability_.values[static_cast<std::size_t>(Measure::kEpsilon)] = epsilon_.result();
   epsilon_begun_ = false;
 }
 

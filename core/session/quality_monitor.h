@@ -1,7 +1,7 @@
 #pragma once
 
 /// Keeps every quality measure of the present grasp fresh without ever standing in the way of a
-/// tick: the singular values each tick, one load margin every kMarginInterval ticks in turn,
+/// tick: what is fit for a tick each tick, one load margin every kMarginInterval ticks in turn,
 /// epsilon a few facets at a time in the ticks between. What is done in which tick depends on
 /// nothing but the number of ticks and the grasp.
 
@@ -15,17 +15,16 @@ namespace regrasp {
 
 class QualityMonitor {
  public:
-  static constexpr int kMarginInterval = 5;       ///< ticks from one load margin to the next
-  static constexpr int kEpsilonFacets = 60;       ///< facets per tick (about 0.1 us each)
-  static constexpr int kEpsilonEdges = 8;         ///< of the friction pyramid
-  static constexpr int kMaxEpsilonSteps = 10000;  ///< more are never needed
+  static constexpr int kMarginInterval = 5;            ///< ticks from one load margin to the next
+  static constexpr int kEpsilonFacets = 60;            ///< facets per tick (about 0.1 us each)
+  static constexpr int kEpsilonEdges = kMonitorEdges;  ///< of the friction pyramid
+  static constexpr int kMaxEpsilonSteps = 10000;       ///< more are never needed
   static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
 
   /// `fingers`: those that form the grasp. gravity_W [m/s²]; dt [s].
   void Update(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
               const ControlParameters& parameters, double dt);
-  /// `volume` stays 0: it is too slow for a tick (see WrenchHullVolume()). `epsilon` is of the
-  /// grasp some 0.1 s ago.
+  /// Epsilon is of the grasp some 0.1 s ago.
   const StabilityFrame& stability() const { return stability_; }
   /// Load margins for the controllers: low-passed.
   const LoadMargins& margins() const { return margins_; }

@@ -38,6 +38,10 @@ struct Verdict {
 };
 Verdict Check(CommandType type, SessionState state, bool job_running);
 
+/// Whether a job can run with these parameters: where it maximises stability, the selected measure
+/// must be fit for a tick. `criterion`: of an explore job.
+Verdict CheckMeasure(const Parameters& parameters, JobMethod method, Criterion criterion);
+
 class Session {
  public:
   /// Builds the world at tick 0, state idle. Throws ModelError when model and scenario do not fit.

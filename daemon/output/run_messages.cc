@@ -1,6 +1,10 @@
 #include "daemon/output/run_messages.h"
 
+#include <fmt/format.h>
+
+#include <array>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "core/gait/finger_gait.h"
@@ -9,112 +13,6 @@
 
 namespace regrasp {
 namespace {
-
-struct Field {
-  const char* name;
-  const char* type;  ///< of JSON
-  const char* meaning;
-};
-
-constexpr Field kSegment = {"segment", "integer", "counts resets and restores within the file"};
-constexpr Field kTick = {"tick", "integer", "number of steps since the reset"};
-constexpr Field kTime = {"t_s", "number", "tick times dt [s]"};
-
-std::vector<Field> Fields(RunTopic topic) {
-  switch (topic) {
-    case RunTopic::kRun:
-      return {kSegment,
-              {"format", "string", "regrasp-run/1"},
-              {"build", "string", "version, commit, compiler, flags"},
-              {"seed", "integer", "of start and noise"},
-              {"noise", "object", "levels at tick 0"},
-              {"parameters", "object", "values at tick 0"},
-              {"changed_parameters", "object", "those that differ from their defaults"},
-              {"world", "object", "time step and stepper"},
-              {"model", "object", "hand, object, scenario"}};
-    case RunTopic::kCommands:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"seq", "integer", "counts the commands of the segment"},
-              {"method", "string", "as on the wire; branch: a restored checkpoint began here"},
-              {"state_hash", "string", "right after the command"}};
-    case RunTopic::kState:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"state", "string",
-               "idle, grasping, holding, exploring, rotating, moving, releasing, dropped, faulted"},
-              {"commands", "integer", "of the segment, applied before this state"},
-              {"state_hash", "string", "of the whole simulation and controller"}};
-    case RunTopic::kEvents:
-      return {kSegment, kTick, kTime, {"kind", "string", ""}, {"text", "string", "one sentence"}};
-    case RunTopic::kJoints:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"angle_rad", "array", "sensed, per joint"},
-              {"true_angle_rad", "array", "per joint"},
-              {"true_rate_rad_s", "array", "per joint"},
-              {"torque_nm", "array", "applied, per joint"}};
-    case RunTopic::kContacts:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"role", "array", "per finger: free, hold, explore, move"},
-              {"in_contact", "array", "sensed, per finger"},
-              {"p_WC_m", "array", "sensed contact points in W, per finger"},
-              {"normal_W", "array", "sensed outward normals of the object, per finger"},
-              {"force_n", "array", "sensed normal force, per finger"},
-              {"true_p_WC_m", "array", "per finger; zero without contact"}};
-    case RunTopic::kForces:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"force_command_W_n", "array", "on the object, that control asks for, per finger"},
-              {"true_force_W_n", "array", "on the object, per finger"}};
-    case RunTopic::kObject:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"p_WO_m", "array", "sensed"},
-              {"q_WO_wxyz", "array", "sensed"},
-              {"true_p_WO_m", "array", ""},
-              {"true_q_WO_wxyz", "array", ""},
-              {"true_v_m_s", "array", ""},
-              {"true_w_rad_s", "array", ""}};
-    case RunTopic::kQuality:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"manipulability", "array", "per finger"},
-              {"true_manipulability", "array", "per finger"},
-              {"load_margin_without_n", "array", "per finger"},
-              {"load_margin_n", "number", "of the whole grasp"},
-              {"stability", "number", "the selected measure"},
-              {"threshold", "number", "of the criterion switched"},
-              {"min_singular_value", "number", ""},
-              {"epsilon", "number", ""},
-              {"sqrt_det", "number", ""},
-              {"isotropy", "number", ""},
-              {"exploring", "integer", "index of the finger, -1: none"},
-              {"phi", "number", "of the exploration"},
-              {"gradient_norm_1_m", "number", "of the exploration"}};
-    case RunTopic::kGait:
-      return {kSegment,
-              kTick,
-              kTime,
-              {"phase", "string", "of the gait"},
-              {"finger", "integer", "index of the finger that regrasps, -1: none"},
-              {"state", "string", "of the gait table: S_T, ..., object motion while all hold"},
-              {"reference_angle_rad", "number", "of the object's reference so far"},
-              {"target_angle_rad", "number", "the same, by its older name"},
-              {"achieved_angle_rad", "number", ""},
-              {"cycles", "integer", ""},
-              {"regrasps", "integer", ""}};
-  }
-  return {};
-}
 
 double Round(double x) { return std::round(x * 1e7) / 1e7 + 0.0; }  // no -0
 
@@ -126,20 +24,194 @@ Json List(const Vector& v) {
 }
 Json Wxyz(const Quaterniond& q) { return List(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())); }
 
-template <typename Get>
-Json PerFinger(const Frame& frame, Get get) {
-  Json json = Json::array();
-  for (const FingerFrame& finger : frame.fingers) json.push_back(get(finger));
-  return json;
+/// What one sample is made of.
+struct Sample {
+  const Published& published;
+  const Frame& frame;
+};
+using S = const Sample&;
+using F = const FingerFrame&;
+
+/// One field of a topic: its place in the schema, and how a sample fills it. Topics that are not
+/// sampled (run, commands, events) are written elsewhere and have no `get`.
+struct Field {
+  std::string name;
+  const char* type;  ///< of JSON
+  std::string meaning;
+  std::function<Json(S)> get = {};
+};
+
+/// A list with an entry for each finger.
+Field PerFinger(const char* name, const char* meaning, Json (*get)(F)) {
+  return {name, "array", meaning, [get](S s) {
+            Json json = Json::array();
+            for (const FingerFrame& finger : s.frame.fingers) json.push_back(get(finger));
+            return json;
+          }};
+}
+
+const Field kSegment = {"segment", "integer", "counts resets and restores within the file"};
+const Field kTick = {"tick", "integer", "number of steps since the reset"};
+const Field kTime = {"t_s", "number", "tick times dt [s]"};
+
+std::vector<Field> QualityFields() {
+  std::vector<Field> fields = {
+      PerFinger("manipulability", "per finger", [](F f) { return Json(Round(f.manipulability)); }),
+      PerFinger("true_manipulability", "per finger",
+                [](F f) { return Json(Round(f.true_manipulability)); }),
+      PerFinger("load_margin_without_n", "per finger",
+                [](F f) { return Json(Round(f.load_margin_without)); }),
+      {"load_margin_n", "number", "of the whole grasp",
+       [](S s) { return Round(s.frame.stability.load_margin); }},
+      {"stability", "number", "the selected measure",
+       [](S s) { return Round(s.frame.stability.active); }},
+      {"stability_measure", "string", "its name",
+       [](S s) { return Json(InfoOf(s.frame.stability.measure).name); }},
+      {"threshold", "number", "of the criterion switched",
+       [](S s) { return Round(s.frame.stability.threshold); }}};
+  for (std::size_t i = 0; i < kNumFrameMeasures; ++i) {
+    const MeasureInfo& info = kMeasureTable[i];
+    fields.push_back({std::string(info.name), "number", std::string(info.meaning),
+                      [i](S s) { return Round(s.frame.stability.values[i]); }});
+  }
+  fields.insert(
+      fields.end(),
+      {{"exploring", "integer", "index of the finger, -1: none",
+        [](S s) { return s.frame.exploration.active ? s.frame.exploration.finger : -1; }},
+       {"phi", "number", "of the exploration", [](S s) { return Round(s.frame.exploration.phi); }},
+       {"gradient_norm_1_m", "number", "of the exploration",
+        [](S s) { return Round(s.frame.exploration.gradient_norm); }}});
+  return fields;
+}
+
+std::vector<Field> JointFields() {
+  return {{"angle_rad", "array", "sensed, per joint", [](S s) { return List(s.frame.q_sensed); }},
+          {"true_angle_rad", "array", "per joint", [](S s) { return List(s.frame.q); }},
+          {"true_rate_rad_s", "array", "per joint", [](S s) { return List(s.frame.qdot); }},
+          {"torque_nm", "array", "applied, per joint", [](S s) { return List(s.frame.torque); }}};
+}
+
+std::vector<Field> ContactFields() {
+  return {PerFinger("role", "per finger: free, hold, explore, move",
+                    [](F f) { return Json(Name(f.role)); }),
+          PerFinger("in_contact", "sensed, per finger", [](F f) { return Json(f.in_contact); }),
+          PerFinger("p_WC_m", "sensed contact points in W, per finger",
+                    [](F f) { return List(f.p_WC); }),
+          PerFinger("normal_W", "sensed outward normals of the object, per finger",
+                    [](F f) { return List(f.normal_W); }),
+          PerFinger("force_n", "sensed normal force, per finger",
+                    [](F f) { return Json(Round(f.force)); }),
+          PerFinger("true_p_WC_m", "per finger; zero without contact",
+                    [](F f) { return List(f.true_p_WC); })};
+}
+
+std::vector<Field> ForceFields() {
+  return {PerFinger("force_command_W_n", "on the object, that control asks for, per finger",
+                    [](F f) { return List(f.f_command_W); }),
+          PerFinger("true_force_W_n", "on the object, per finger",
+                    [](F f) { return List(f.true_force_W); })};
+}
+
+std::vector<Field> ObjectFields() {
+  return {{"p_WO_m", "array", "sensed", [](S s) { return List(s.frame.p_WO_sensed); }},
+          {"q_WO_wxyz", "array", "sensed", [](S s) { return Wxyz(s.frame.q_WO_sensed); }},
+          {"true_p_WO_m", "array", "", [](S s) { return List(s.frame.p_WO); }},
+          {"true_q_WO_wxyz", "array", "", [](S s) { return Wxyz(s.frame.q_WO); }},
+          {"true_v_m_s", "array", "", [](S s) { return List(s.frame.v_WO); }},
+          {"true_w_rad_s", "array", "", [](S s) { return List(s.frame.w_WO); }}};
+}
+
+std::vector<Field> GaitFields() {
+  return {{"phase", "string", "of the gait",
+           [](S s) { return Json(Name(static_cast<GaitPhase>(s.frame.gait.phase))); }},
+          {"finger", "integer", "index of the finger that regrasps, -1: none",
+           [](S s) { return Json(s.frame.gait.finger); }},
+          {"state", "string", "of the gait table: S_T, ..., object motion while all hold",
+           [](S s) { return Json(s.frame.gait.state); }},
+          {"reference_angle_rad", "number", "of the object's reference so far",
+           [](S s) { return Json(Round(s.frame.gait.reference_angle_rad)); }},
+          {"target_angle_rad", "number", "the same, by its older name",
+           [](S s) { return Json(Round(s.frame.gait.target_angle_rad)); }},
+          {"achieved_angle_rad", "number", "",
+           [](S s) { return Json(Round(s.frame.gait.achieved_angle_rad)); }},
+          {"cycles", "integer", "", [](S s) { return Json(s.frame.gait.cycles); }},
+          {"regrasps", "integer", "", [](S s) { return Json(s.frame.gait.regrasps); }}};
+}
+
+/// Fields of a topic after segment, tick and time.
+std::vector<Field> OwnFields(RunTopic topic) {
+  switch (topic) {
+    case RunTopic::kRun:
+      return {{"format", "string", "regrasp-run/1"},
+              {"build", "string", "version, commit, compiler, flags"},
+              {"seed", "integer", "of start and noise"},
+              {"noise", "object", "levels at tick 0"},
+              {"parameters", "object", "values at tick 0"},
+              {"changed_parameters", "object", "those that differ from their defaults"},
+              {"world", "object", "time step and stepper"},
+              {"model", "object", "hand, object, scenario"}};
+    case RunTopic::kCommands:
+      return {{"seq", "integer", "counts the commands of the segment"},
+              {"method", "string", "as on the wire; branch: a restored checkpoint began here"},
+              {"state_hash", "string", "right after the command"}};
+    case RunTopic::kState:
+      return {{"state", "string",
+               "idle, grasping, holding, exploring, rotating, moving, releasing, dropped, faulted",
+               [](S s) { return Json(Name(s.frame.state)); }},
+              {"commands", "integer", "of the segment, applied before this state",
+               [](S s) { return Json(s.published.commands); }},
+              {"state_hash", "string", "of the whole simulation and controller",
+               [](S s) { return Json(HashText(s.frame.state_hash)); }}};
+    case RunTopic::kEvents:
+      return {{"kind", "string", ""}, {"text", "string", "one sentence"}};
+    case RunTopic::kJoints:
+      return JointFields();
+    case RunTopic::kContacts:
+      return ContactFields();
+    case RunTopic::kForces:
+      return ForceFields();
+    case RunTopic::kObject:
+      return ObjectFields();
+    case RunTopic::kQuality:
+      return QualityFields();
+    case RunTopic::kGait:
+      return GaitFields();
+  }
+  return {};
+}
+
+/// Every field of a topic, in the order of its message.
+const std::vector<Field>& Fields(RunTopic topic) {
+  static const auto all = [] {
+    std::array<std::vector<Field>, kRunTopics.size()> lists;
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      lists[i] = {kSegment};
+      if (static_cast<RunTopic>(i) != RunTopic::kRun)
+        lists[i].insert(lists[i].end(), {kTick, kTime});
+      const std::vector<Field> own = OwnFields(static_cast<RunTopic>(i));
+      lists[i].insert(lists[i].end(), own.begin(), own.end());
+    }
+    return lists;
+  }();
+  return all[static_cast<std::size_t>(topic)];
 }
 
 }  // namespace
+
+std::string RunFieldTable() {
+  std::string text = "| topic | field | type | meaning |\n|---|---|---|---|\n";
+  for (std::size_t i = 0; i < kRunTopics.size(); ++i)
+    for (const Field& field : Fields(static_cast<RunTopic>(i)))
+      text += fmt::format("| `{}` | `{}` | {} | {} |\n", kRunTopics[i], field.name, field.type,
+                          field.meaning);
+  return text;
+}
 
 std::string RunSchema(RunTopic topic) {
   Json properties = Json::object(), required = Json::array();
   for (const Field& field : Fields(topic)) {
     properties[field.name] = {{"type", field.type}};
-    if (*field.meaning) properties[field.name]["description"] = field.meaning;
+    if (!field.meaning.empty()) properties[field.name]["description"] = field.meaning;
     required.push_back(field.name);
   }
   return Json{{"type", "object"}, {"properties", properties}, {"required", required}}.dump();
@@ -154,71 +226,9 @@ std::string RunEvent(const Event& event, const HandModel& hand, double dt, int s
 std::string RunSample(RunTopic topic, const Published& published, int segment) {
   const Frame& frame = published.frame;
   Json json = {{"segment", segment}, {"tick", frame.tick}, {"t_s", frame.time_s}};
-  using F = const FingerFrame&;
-  switch (topic) {
-    case RunTopic::kState:
-      json["state"] = Name(frame.state);
-      json["commands"] = published.commands;
-      json["state_hash"] = HashText(frame.state_hash);
-      break;
-    case RunTopic::kJoints:
-      json["angle_rad"] = List(frame.q_sensed);
-      json["true_angle_rad"] = List(frame.q);
-      json["true_rate_rad_s"] = List(frame.qdot);
-      json["torque_nm"] = List(frame.torque);
-      break;
-    case RunTopic::kContacts:
-      json["role"] = PerFinger(frame, [](F f) { return Json(Name(f.role)); });
-      json["in_contact"] = PerFinger(frame, [](F f) { return Json(f.in_contact); });
-      json["p_WC_m"] = PerFinger(frame, [](F f) { return List(f.p_WC); });
-      json["normal_W"] = PerFinger(frame, [](F f) { return List(f.normal_W); });
-      json["force_n"] = PerFinger(frame, [](F f) { return Json(Round(f.force)); });
-      json["true_p_WC_m"] = PerFinger(frame, [](F f) { return List(f.true_p_WC); });
-      break;
-    case RunTopic::kForces:
-      json["force_command_W_n"] = PerFinger(frame, [](F f) { return List(f.f_command_W); });
-      json["true_force_W_n"] = PerFinger(frame, [](F f) { return List(f.true_force_W); });
-      break;
-    case RunTopic::kObject:
-      json["p_WO_m"] = List(frame.p_WO_sensed);
-      json["q_WO_wxyz"] = Wxyz(frame.q_WO_sensed);
-      json["true_p_WO_m"] = List(frame.p_WO);
-      json["true_q_WO_wxyz"] = Wxyz(frame.q_WO);
-      json["true_v_m_s"] = List(frame.v_WO);
-      json["true_w_rad_s"] = List(frame.w_WO);
-      break;
-    case RunTopic::kQuality:
-      json["manipulability"] = PerFinger(frame, [](F f) { return Json(Round(f.manipulability)); });
-      json["true_manipulability"] =
-          PerFinger(frame, [](F f) { return Json(Round(f.true_manipulability)); });
-      json["load_margin_without_n"] =
-          PerFinger(frame, [](F f) { return Json(Round(f.load_margin_without)); });
-      json["load_margin_n"] = Round(frame.stability.load_margin);
-      json["stability"] = Round(frame.stability.active);
-      json["threshold"] = Round(frame.stability.threshold);
-      json["min_singular_value"] = Round(frame.stability.min_singular_value);
-      json["epsilon"] = Round(frame.stability.epsilon);
-      json["sqrt_det"] = Round(frame.stability.sqrt_det);
-      json["isotropy"] = Round(frame.stability.isotropy);
-      json["exploring"] = frame.exploration.active ? frame.exploration.finger : -1;
-      json["phi"] = Round(frame.exploration.phi);
-      json["gradient_norm_1_m"] = Round(frame.exploration.gradient_norm);
-      break;
-    case RunTopic::kGait:
-      json["phase"] = Name(static_cast<GaitPhase>(frame.gait.phase));
-      json["finger"] = frame.gait.finger;
-      json["state"] = frame.gait.state;
-      json["reference_angle_rad"] = Round(frame.gait.reference_angle_rad);
-      json["target_angle_rad"] = Round(frame.gait.target_angle_rad);
-      json["achieved_angle_rad"] = Round(frame.gait.achieved_angle_rad);
-      json["cycles"] = frame.gait.cycles;
-      json["regrasps"] = frame.gait.regrasps;
-      break;
-    case RunTopic::kRun:
-    case RunTopic::kCommands:
-    case RunTopic::kEvents:
-      break;
-  }
+  const Sample sample{published, frame};
+  for (const Field& field : Fields(topic))
+    if (field.get) json[field.name] = field.get(sample);
   return json.dump();
 }
 

@@ -30,6 +30,9 @@ inline constexpr std::array<std::string_view, 10> kRunTopics = {
     "run",      "commands", "state",  "events",  "joints",
     "contacts", "forces",   "object", "quality", "gait"};
 
+/// Every field of every topic, as a table in Markdown: topic, field, type, meaning.
+std::string RunFieldTable();
+
 /// The JSON schema of a topic.
 std::string RunSchema(RunTopic topic);
 

@@ -1,11 +1,16 @@
 #include "daemon/pages/protocol_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cctype>
 
+#include "core/exploration/criterion.h"
 #include "core/protocol/errors.h"
 #include "core/protocol/methods.h"
+#include "core/quality/measures.h"
+#include "core/session/parameter_value.h"
+#include "daemon/output/run_messages.h"
 
 namespace regrasp {
 namespace {
@@ -79,6 +84,43 @@ std::string MethodSection(const MethodSpec& method) {
   return text;
 }
 
+std::string ParameterSection() {
+  std::string text =
+      "## Parameters\n\nWhat `param.set` and the table `[parameters]` of the configuration file "
+      "take. Defaults of `object` and `gravity` are the model's.\n\n"
+      "| name | type | unit | allowed | default | meaning | source of the default |\n"
+      "|---|---|---|---|---|---|---|\n";
+  const Parameters defaults;
+  for (const ParameterInfo& info : ParameterTable()) {
+    const std::string allowed = info.words.empty()
+                                    ? info.type == ParameterType::kBoolean
+                                          ? "`true`, `false`"
+                                          : fmt::format("{} ... {}", info.min, info.max)
+                                    : fmt::format("`{}`", fmt::join(info.words, "`, `"));
+    text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", info.name, Name(info.type),
+                        info.unit, allowed, ParameterText(info, info.get(defaults)), info.meaning,
+                        info.source);
+  }
+  return text + "\n";
+}
+
+std::string MeasureSection() {
+  std::string text =
+      "## Measures of stability\n\nEach is in the answer of `quality` by its name; "
+      "`control.stability_measure` selects the one that stability means.\n\n"
+      "| name | meaning | how often | exploration may maximise it |\n|---|---|---|---|\n";
+  for (const MeasureInfo& info : kMeasureTable)
+    text += fmt::format("| `{}` | {} | {} | {} |\n", info.name, info.meaning,
+                        info.cost == MeasureCost::kTick     ? "every tick"
+                        : info.cost == MeasureCost::kSpread ? "every 0.1 s or so"
+                                                            : "when asked for",
+                        info.cost == MeasureCost::kTick ? "yes" : "no: too slow for a tick");
+  text += "\nWhat `explore` may maximise (`criterion`):\n\n| name | meaning |\n|---|---|\n";
+  for (const CriterionInfo& info : kCriterionTable)
+    text += fmt::format("| `{}` | {} |\n", info.name, info.meaning);
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string ProtocolPage() {
@@ -105,6 +147,8 @@ std::string ProtocolPage() {
       "faulted)`, end_finger` (whose limit it was, or null)`, "
       "max_position_error_m, max_rotation_error_rad` (object against its reference)`, sim_time_s`; "
       "what was achieved and the errors are noise-free, too.\n\n";
+  page += ParameterSection() + MeasureSection();
+  page += "## Fields of run files\n\n" + RunFieldTable() + "\n";
   page +=
       "## Errors\n\n`{\"code\", \"message\", \"data\": {\"hint\", \"param\", \"allowed\"}}`\n\n"
       "| code | name | `regrasp` exits with | when |\n|---|---|---|---|\n";

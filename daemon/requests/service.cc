@@ -11,7 +11,8 @@
 namespace regrasp {
 namespace {
 
-constexpr std::size_t kMaxBacklog = 200;   // commands that wait for a tick; every parameter at once fits
+constexpr std::size_t kMaxBacklog =
+    200;  // commands that wait for a tick; every parameter at once fits
 constexpr std::size_t kEventsKept = 1000;  // for `events`
 constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
 
@@ -216,6 +217,13 @@ void Service::CheckNotFaulted() const {
                        "regrasp reset");
 }
 
+void Service::CheckMeasure(const Parameters& parameters, JobMethod method,
+                           Criterion criterion) const {
+  const Verdict verdict = regrasp::CheckMeasure(parameters, method, criterion);
+  if (verdict.kind != Verdict::Kind::kAllowed)
+    throw RpcException(ErrorCode::kBadState, verdict.reason, verdict.hint);
+}
+
 void Service::CheckNotRestoring() const {
   if (const JobRecord* job = jobs_.Restoring())
     throw RpcException(ErrorCode::kBusy,
@@ -257,6 +265,10 @@ std::string Service::SourceOfValue(const ParameterInfo& info) const {
 }
 
 std::uint64_t Service::SetParameters(const std::vector<Command>& commands) {
+  Parameters next = accepted.parameters;
+  for (const Command& command : commands) SetParameter(&next, command);
+  if (const JobRecord* job = jobs_.Unfinished())
+    CheckMeasure(next, job->method, job->explore.criterion);
   CheckRoom(commands.size());
   std::uint64_t barrier = 0;
   for (const Command& command : commands) {

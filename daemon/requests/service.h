@@ -139,13 +139,16 @@ class Service {
   Json ChangedParameters() const;
   /// Where the present value comes from: the table's source while it is the default.
   std::string SourceOfValue(const ParameterInfo& info) const;
-  /// Checks nothing; the commands are queued together or, with busy thrown, not at all. Returns the
+  /// The commands, whose values are allowed, are queued together; or, with busy or bad state
+  /// thrown, not at all. Returns the
   /// request after which all have taken effect, 0 where there are none.
   std::uint64_t SetParameters(const std::vector<Command>& commands);
 
   /// Throws busy, bad state or simulation fault unless the command may be given now.
   void CheckAllowed(CommandType type) const;
   void CheckNotFaulted() const;
+  /// Throws bad state where such a job cannot run with these parameters.
+  void CheckMeasure(const Parameters& parameters, JobMethod method, Criterion criterion) const;
   /// Throws busy while a checkpoint is being restored.
   void CheckNotRestoring() const;
   /// Queues a request; throws busy when there is no room.

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
+#include <span>
 
 #include "core/sensing/noise.h"
 #include "daemon/requests/handlers.h"
@@ -18,6 +20,7 @@ constexpr double kLeastMove = 1e-9;  // shorter than this, an offset [m] or rota
 /// Checks, makes a job and queues the command that works on it.
 Outcome StartJob(Service& service, JobMethod method, Command command) {
   service.CheckAllowed(command.type);
+  service.CheckMeasure(service.accepted.parameters, method, command.criterion);
   JobRecord& job = service.jobs().Add(method);
   const std::int64_t id = job.id;
   job.explore.finger = command.finger;
@@ -42,12 +45,10 @@ Command Of(CommandType type) {
   return command;
 }
 
-/// The word's place in `values`, which is also its value in the enumeration `E`.
+/// The entry of an enumeration whose name is `word`, one of `names`.
 template <typename E>
-E EnumNamed(std::string_view word, std::initializer_list<E> values) {
-  for (const E value : values)
-    if (Name(value) == word) return value;
-  return *values.begin();
+E EnumNamed(std::string_view word, std::span<const std::string_view> names) {
+  return static_cast<E>(std::ranges::find(names, word) - names.begin());
 }
 
 Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
@@ -69,11 +70,10 @@ Outcome Release(Service& service, const Params&, Client&) {
 Outcome Explore(Service& service, const Params& params, Client&) {
   Command command = Of(CommandType::kExplore);
   command.finger = service.hand().FindFinger(params.String("finger"));
-  command.criterion = EnumNamed(params.String("criterion", "manipulability"),
-                                {Criterion::kManipulability, Criterion::kStability,
-                                 Criterion::kSwitched, Criterion::kCombined});
-  command.estimator = EnumNamed(params.String("estimator", "least_squares"),
-                                {Estimator::kLeastSquares, Estimator::kSecant});
+  command.criterion =
+      EnumNamed<Criterion>(params.String("criterion", "manipulability"), kCriterionNames);
+  command.estimator =
+      EnumNamed<Estimator>(params.String("estimator", "least_squares"), kEstimatorNames);
   command.seed = static_cast<std::uint64_t>(
       params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
   command.max_cycles = static_cast<int>(params.Integer("max_cycles", 0));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/gait/finger_gait.h"
-#include "core/quality/epsilon.h"
+#include "core/quality/measures.h"
 #include "core/sensing/noise.h"
 #include "daemon/output/incident.h"
 
@@ -51,24 +51,18 @@ double TorqueScale(const std::vector<GraspContact>& contacts) {
   return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
 }
 
-/// Volume of the grasp wrench space. Takes about a millisecond: too slow for the simulation, so it
-/// is made here.
-double HullVolume(const std::vector<GraspContact>& contacts) {
-  return contacts.empty() ? 0 : WrenchHullVolume(contacts, TorqueScale(contacts), kVolumeEdges);
-}
-
-std::string_view MeasureName(const Parameters& parameters) {
-  switch (parameters.control.stability_measure) {
-    case StabilityMeasure::kMinSingularValue:
-      return "min_singular_value";
-    case StabilityMeasure::kEpsilon:
-      return "epsilon";
-    case StabilityMeasure::kSqrtDet:
-      return "sqrt_det";
-    case StabilityMeasure::kIsotropy:
-      return "isotropy";
+/// Every measure of stability: what the frame has, and what is too slow for the simulation.
+void AddMeasures(const Frame& frame, const std::vector<GraspContact>& contacts, Json* json) {
+  MeasureInput input(contacts, TorqueScale(contacts), kMonitorEdges);
+  Json names = Json::array();
+  for (const MeasureInfo& info : kMeasureTable) {
+    names.push_back(info.name);
+    const bool here = info.cost == MeasureCost::kOnRequest;
+    (*json)[std::string(info.name)] = !here              ? frame.stability.of(info.id)
+                                      : contacts.empty() ? 0.0
+                                                         : info.compute(input);
   }
-  return "";
+  (*json)["measures"] = std::move(names);
 }
 
 }  // namespace
@@ -133,21 +127,18 @@ Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& pa
                    {"phi", e.phi},
                    {"gradient_norm_1_m", e.gradient_norm},
                    {"gradient_threshold_1_m", e.epsilon}};
-  return {{"tick", frame.tick},
-          {"time_s", frame.time_s},
-          {"criterion", ActiveCriterion(frame)},
-          {"stability", s.active},
-          {"stability_measure", MeasureName(parameters)},
-          {"threshold", s.threshold},
-          {"load_margin_n", s.load_margin},
-          {"min_singular_value", s.min_singular_value},
-          {"epsilon", s.epsilon},
-          {"sqrt_det", s.sqrt_det},
-          {"isotropy", s.isotropy},
-          {"volume", HullVolume(holding)},
-          {"torque_scale_m", holding.empty() ? Json() : Json(TorqueScale(holding))},
-          {"exploration", std::move(exploration)},
-          {"fingers", std::move(fingers)}};
+  Json json = {{"tick", frame.tick},
+               {"time_s", frame.time_s},
+               {"criterion", ActiveCriterion(frame)},
+               {"stability", s.active},
+               {"stability_measure", InfoOf(s.measure).name},
+               {"threshold", s.threshold},
+               {"load_margin_n", s.load_margin}};
+  AddMeasures(frame, holding, &json);
+  json["torque_scale_m"] = holding.empty() ? Json() : Json(TorqueScale(holding));
+  json["exploration"] = std::move(exploration);
+  json["fingers"] = std::move(fingers);
+  return json;
 }
 
 Json TruthJson(const Frame& frame, const HandModel& hand) {

@@ -499,8 +499,7 @@ bool Finite(const Frame& f) {
   for (const auto& c : f.contacts)
     ok = ok && c.p_WC.allFinite() && c.normal_W.allFinite() && c.force_W.allFinite();
   const StabilityFrame& s = f.stability;
-  for (const double x : {s.active, s.threshold, s.min_singular_value, s.epsilon, s.sqrt_det,
-                         s.isotropy, f.exploration.phi, f.exploration.gradient_norm})
+  for (const double x : {s.active, s.threshold, f.exploration.phi, f.exploration.gradient_norm})
     ok = ok && std::isfinite(x);
   return ok && !std::isnan(s.load_margin) && f.exploration.gradient_W.allFinite();
 }
@@ -532,10 +531,12 @@ TEST(Session, FrameTellsTheQualityOfTheGrasp) {
   ASSERT_TRUE(run.Grasp());
   run.Ticks(1000);
   const Frame frame = run.Snapshot();
-  EXPECT_GT(frame.stability.min_singular_value, 0);
-  EXPECT_GT(frame.stability.epsilon, 0);  // five fingers around a sphere: force closure
+  EXPECT_GT(frame.stability.of(Measure::kMinSingularValue), 0);
+  EXPECT_GT(frame.stability.of(Measure::kEpsilon),
+            0);  // five fingers around a sphere: force closure
   EXPECT_GT(frame.stability.load_margin, 0);
-  EXPECT_EQ(frame.stability.active, frame.stability.min_singular_value);
+  EXPECT_EQ(frame.stability.measure, Measure::kMinSingularValue);
+  EXPECT_EQ(frame.stability.active, frame.stability.of(Measure::kMinSingularValue));
   for (const FingerFrame& finger : frame.fingers) {
     EXPECT_EQ(finger.role, FingerRole::kHold);
     EXPECT_TRUE(finger.true_contact);

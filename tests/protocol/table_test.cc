@@ -49,21 +49,6 @@ TEST(MethodTable, KnowsTheNoisePresets) {
   EXPECT_TRUE(std::equal(table.begin(), table.end(), presets.begin(), presets.end()));
 }
 
-TEST(MethodTable, KnowsCriteriaAndEstimators) {
-  const MethodSpec& explore = *FindMethod("explore");
-  std::set<std::string_view> criteria, estimators;
-  for (const auto c : {Criterion::kManipulability, Criterion::kStability, Criterion::kSwitched,
-                       Criterion::kCombined})
-    criteria.insert(Name(c));
-  for (const auto e : {Estimator::kSecant, Estimator::kLeastSquares}) estimators.insert(Name(e));
-  const auto as_set = [&](std::string_view name) {
-    const auto values = FindParam(explore, name)->values;
-    return std::set<std::string_view>(values.begin(), values.end());
-  };
-  EXPECT_EQ(as_set("criterion"), criteria);
-  EXPECT_EQ(as_set("estimator"), estimators);
-}
-
 TEST(ErrorTable, GivesEveryCodeAnExitCode) {
   EXPECT_EQ(ExitCodeFor(-32001), ExitCode::kRefused);
   EXPECT_EQ(ExitCodeFor(-32602), ExitCode::kUsage);

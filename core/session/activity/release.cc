@@ -3,28 +3,20 @@
 #include <algorithm>
 
 namespace regrasp {
-namespace {
-
-constexpr double kReleaseTime_s = 0.5;
-constexpr double kReleasePull_n = 12.0;  // lets go at once, so that no finger drags on the object
-constexpr double kReleasePullTime_s = 0.01;
-
-}  // namespace
-
 ActivityStep ReleaseActivity::Update(const ActivityContext& context) {
   const double time = context.job_time_s();
   if (time == 0) context.ToPosture(context.start.q_open);
-  context.job.progress = std::min(0.99, time / kReleaseTime_s);
-  if (time < kReleaseTime_s) return {};
+  context.job.progress = std::min(0.99, time / context.now.control.release_s);
+  if (time < context.now.control.release_s) return {};
   return ActivityStep::Ended(JobState::kDone, SessionState::kIdle);
 }
 
 void ReleaseActivity::AddTorque(const ActivityContext& context, JointVector* torque) const {
-  if (context.job_time_s() >= kReleasePullTime_s) return;
+  if (context.job_time_s() >= context.now.control.release_pull_s) return;
   for (int i = 0; i < context.now.hand.num_fingers(); ++i) {
     const FingerEstimate& f = context.now.estimate.fingers[i];
     if (!f.ever_in_contact) continue;
-    const FingerVector tau = f.J.transpose() * (kReleasePull_n * f.normal_W);
+    const FingerVector tau = f.J.transpose() * (context.now.control.release_pull * f.normal_W);
     const auto& joints = context.now.hand.fingers[i].joints;
     for (std::size_t k = 0; k < joints.size(); ++k)
       (*torque)[joints[k]] += tau[static_cast<Eigen::Index>(k)];

@@ -38,13 +38,13 @@ TEST_F(ObjectiveTest, StabilityMeasureIsSelectable) {
   const Grasp grasp = GraspOf(estimate_, kAll, parameters_.friction_estimate);
   const SingularMeasures m =
       ComputeSingularMeasures({grasp.data(), grasp.size()}, estimate_.object_scale);
-  const auto With = [&](StabilityMeasure measure) {
+  const auto With = [&](Measure measure) {
     parameters_.stability_measure = measure;
     return GraspStability(estimate_, kAll, parameters_);
   };
-  EXPECT_EQ(With(StabilityMeasure::kMinSingularValue), m.min_singular_value);
-  EXPECT_EQ(With(StabilityMeasure::kSqrtDet), m.sqrt_det);
-  EXPECT_EQ(With(StabilityMeasure::kIsotropy), m.isotropy);
+  EXPECT_EQ(With(Measure::kMinSingularValue), m.min_singular_value);
+  EXPECT_EQ(With(Measure::kSqrtDet), m.sqrt_det);
+  EXPECT_EQ(With(Measure::kIsotropy), m.isotropy);
 }
 
 TEST_F(ObjectiveTest, SwitchHasHysteresis) {

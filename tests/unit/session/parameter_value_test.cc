@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/session/session.h"
+
 namespace regrasp {
 namespace {
 
@@ -109,6 +111,34 @@ TEST(ParameterValue, SaysWhatIsWrongAndWhatIsAllowed) {
   std::string umlauts;
   for (int i = 0; i < 100; ++i) umlauts += "ä";
   EXPECT_LT(Complaint("gait.mode", "x" + umlauts).size(), 200u);
+}
+
+TEST(CheckMeasure, RefusesToMaximiseWhatIsTooSlowForATick) {
+  using Kind = Verdict::Kind;
+  const auto verdict = [](Measure measure, JobMethod method, Criterion criterion, GaitMode mode) {
+    Parameters parameters;
+    parameters.control.stability_measure = measure;
+    parameters.gait.mode = mode;
+    return CheckMeasure(parameters, method, criterion).kind;
+  };
+  constexpr auto kReturning = GaitMode::kReturning, kExploring = GaitMode::kExploring;
+  for (std::size_t i = 0; i < kNumFrameMeasures; ++i) {
+    const auto measure = static_cast<Measure>(i);
+    const Kind slow =
+        kMeasureTable[i].cost == MeasureCost::kTick ? Kind::kAllowed : Kind::kBadState;
+    for (const CriterionInfo& criterion : kCriterionTable)
+      EXPECT_EQ(verdict(measure, JobMethod::kExplore, criterion.id, kReturning),
+                criterion.takes_stability ? slow : Kind::kAllowed)
+          << kMeasureTable[i].name << ' ' << criterion.name;
+    EXPECT_EQ(verdict(measure, JobMethod::kRotate, Criterion::kManipulability, kExploring), slow);
+    EXPECT_EQ(verdict(measure, JobMethod::kRotate, Criterion::kManipulability, kReturning),
+              Kind::kAllowed);
+    EXPECT_EQ(verdict(measure, JobMethod::kMove, Criterion::kStability, kExploring),
+              Kind::kAllowed);
+  }
+  // One measure at least is too slow, or the loop has shown nothing.
+  EXPECT_EQ(verdict(Measure::kEpsilon, JobMethod::kExplore, Criterion::kStability, kReturning),
+            Kind::kBadState);
 }
 
 }  // namespace

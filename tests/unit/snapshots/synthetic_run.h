@@ -90,7 +90,7 @@ inline std::vector<Frame> SyntheticRun(double seconds, double start_s = 0) {
       finger.manipulability = finger.true_manipulability + 0.01 * std::sin(1.7 * k);
       frame.contacts.push_back({f + 1, f, finger.p_WC, n, finger.true_force_W, 1e-4});
     }
-    frame.stability.active = frame.stability.min_singular_value = 1 - 0.3 * progress;
+    frame.stability.active = frame.stability.values[0] = 1 - 0.3 * progress;
     frame.stability.threshold = kSyntheticThreshold;
     frame.stability.load_margin = 0.5;
     frame.exploration.active = exploring;
