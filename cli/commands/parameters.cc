@@ -80,10 +80,18 @@ void PrintTable(Context& context, const Json& answer) {
   out.Add(table.Text(out));
 }
 
+/// Rows for CSV: a vector, and the list of words, in one cell each.
+std::vector<Json> CsvRows(const Json& parameters) {
+  std::vector<Json> rows(parameters.begin(), parameters.end());
+  for (Json& row : rows)
+    for (const char* field : {"value", "default", "words", "before"})
+      if (row.contains(field)) row[field] = Typed(row[field]);
+  return rows;
+}
+
 ExitCode List(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
-  const Json& parameters = At(answer, "parameters");
-  context.PrintRows(answer, {parameters.begin(), parameters.end()},
+  context.PrintRows(answer, CsvRows(At(answer, "parameters")),
                     [&] { PrintTable(context, answer); });
   return kOk;
 }
@@ -97,7 +105,7 @@ ExitCode GetOrSet(Context& context, const Invocation& invocation) {
 ExitCode Reset(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   const Json& parameters = At(answer, "parameters");
-  context.PrintRows(answer, {parameters.begin(), parameters.end()}, [&] {
+  context.PrintRows(answer, CsvRows(parameters), [&] {
     Output& out = context.out();
     if (parameters.empty()) out.Line("nothing had been changed");
     for (const Json& p : parameters)

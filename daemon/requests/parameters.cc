@@ -113,7 +113,10 @@ Outcome ParamLoad(Service& service, const Params& params, Client&) {
     commands.push_back(ReadMember(service, name, value));
   Json kept = service.ChangedParameters();
   for (const Command& command : commands) kept.erase(std::string(Row(command).name));
-  const std::uint64_t barrier = service.SetParameters(commands);
+  std::vector<Command> changes;
+  for (const Command& command : commands)
+    if (Row(command).get(service.accepted.parameters) != command.value) changes.push_back(command);
+  const std::uint64_t barrier = service.SetParameters(changes);
   Json list = Json::array();
   for (const Command& command : commands) list.push_back(Entry(service, Row(command)));
   return {.result = {{"parameters", std::move(list)}, {"kept", std::move(kept)}},

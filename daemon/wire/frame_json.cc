@@ -32,8 +32,6 @@ std::string_view ActiveCriterion(const Frame& frame) {
   return Name(on_stability ? Criterion::kStability : Criterion::kManipulability);
 }
 
-constexpr int kVolumeEdges = 8;  // of the friction pyramid, as for epsilon
-
 /// The sensed contacts that hold the object, about its sensed centre.
 std::vector<GraspContact> HoldingContacts(const Frame& frame, const Parameters& parameters) {
   std::vector<GraspContact> contacts;

@@ -9,7 +9,7 @@
 #include "core/quality/epsilon.h"
 #include "tests/unit/quality/grasps.h"
 
-namespace regrasp {
+namespace regrasp::test {
 namespace {
 
 constexpr double kScale = 0.025;
@@ -41,4 +41,4 @@ TEST(Measures, EveryRowComputesWhatItIsNamedAfter) {
 }
 
 }  // namespace
-}  // namespace regrasp
+}  // namespace regrasp::test

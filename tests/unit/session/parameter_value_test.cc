@@ -50,9 +50,10 @@ TEST(ParameterTable, EveryRowIsComplete) {
                                : Vector3d(value.x() == info.min ? info.max : info.min, 0, 0);
     info.set(&changed, other);
     EXPECT_EQ(info.get(changed), other) << info.name;
-    for (const ParameterInfo& another : ParameterTable())
-      if (another.name != info.name)
-        EXPECT_EQ(another.get(changed), another.get(defaults)) << info.name << ' ' << another.name;
+    for (const ParameterInfo& another : ParameterTable()) {
+      if (another.name == info.name) continue;
+      EXPECT_EQ(another.get(changed), another.get(defaults)) << info.name << ' ' << another.name;
+    }
   }
 }
 
