@@ -10,7 +10,8 @@ import sys
 import textwrap
 
 TYPES = {"integer": "int", "number": "float", "boolean": "bool", "string": "str", "name": "str", "number[3]": "list[float]",
-         "integer[2]": "list[int]"}
+         "integer[2]": "list[int]", "object": "dict"}
+MOST_VALUES = 20
 SKIP = {"hello", "subscribe", "unsubscribe"}  # Connection does these
 
 
@@ -21,7 +22,8 @@ def python_name(name):
 
 def parameter_line(p):
     unit = f" [{p['unit']}]" if p.get("unit") else ""
-    values = "; one of " + ", ".join(p["values"]) if p.get("values") else ""
+    # Long lists (models, parameters) are the daemon's, not the page's: `describe` tells them.
+    values = "; one of " + ", ".join(p["values"]) if 0 < len(p.get("values", [])) <= MOST_VALUES else ""
     limits = ""
     if "min" in p or "max" in p:
         limits = "; " + " to ".join(f"{p[end]:.16g}" if end in p else "any" for end in ("min", "max"))

@@ -504,7 +504,7 @@ std::string_view Name(NameSource source) {
     case NameSource::kParameter:
       return "parameter";
     case NameSource::kParameterGroup:
-      return "group of parameters";
+      return "parameter group";
     case NameSource::kParameterOrGroup:
       return "parameter or group";
   }

@@ -18,14 +18,15 @@ class Methods:
         """
         return self._ask("checkpoint.list", {})
 
-    def checkpoint_restore(self, name: str, seed: int | None = None) -> Job:
+    def checkpoint_restore(self, name: str, seed: int | None = None, reexecute: bool | None = None) -> Job:
         """Go on from a checkpoint: identically, or with another seed.
         name: letters, digits, - _ . ; at most 64, no dot first.
         seed: branch: sensor noise and later random choices follow this seed; 0 to 9007199254740992; left out: go on
             identically.
+        reexecute: execute the commands again from tick 0, rather than load the state; left out: false.
         Returns a Job.
         """
-        return self._job("checkpoint.restore", {"name": name, "seed": seed})
+        return self._job("checkpoint.restore", {"name": name, "seed": seed, "reexecute": reexecute})
 
     def checkpoint_save(self, name: str) -> dict:
         """Keep this moment, to go on from it later.
@@ -62,7 +63,7 @@ class Methods:
         finger: the finger that explores; one of first, middle, ring, little, thumb.
         criterion: what it maximises; one of manipulability, stability, switched, combined; left out:
             manipulability.
-        estimator: how it estimates the gradient; secant is the rule as printed; one of least_squares, secant; left
+        estimator: how it estimates the gradient; secant is the rule as printed; one of secant, least_squares; left
             out: least_squares.
         seed: seed of the random start direction; 0 to 9007199254740992; left out: the seed of the run.
         max_cycles: give up after so many cycles; 1 to 1000000; left out: parameter exploration.max_cycles.
@@ -149,64 +150,42 @@ class Methods:
 
     def param_get(self, name: str | None = None) -> dict:
         """Values, units, ranges and sources of parameters.
-        name: the parameter; one of control.close_force, control.close_speed, control.contact_filter_s,
-            control.contact_from_normal, control.drop_distance, control.fingertip_stiffness, control.force_filter_s,
-            control.force_integral_limit, control.free_stiffness, control.friction_estimate, control.grip_force,
-            control.grip_ramp_s, control.grip_weight, control.joint_filter_s, control.limit_margin,
-            control.limit_stiffness, control.margin_filter_s, control.mass_estimate, control.max_normal_force,
-            control.min_normal_force, control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
-            control.position_error_limit, control.position_integral, control.position_stiffness,
-            control.posture_stiffness, control.reapproach_delay_s, control.reapproach_force,
-            control.reapproach_speed, control.residual_limit, control.rotation_error_limit,
-            control.rotation_integral, control.rotation_stiffness, control.settle_s, control.slide_force_limit,
-            control.slide_friction_share, control.slide_stiffness, control.stability_measure,
-            control.stability_threshold, control.stand_in_release_s, control.torque_integral_limit,
-            exploration.clearance, exploration.converged_updates, exploration.dither_hz, exploration.dither_speed,
-            exploration.epsilon, exploration.eta, exploration.forgetting, exploration.gradient_max,
-            exploration.lambda, exploration.least_facing, exploration.limit_margin, exploration.max_cycles,
-            exploration.max_excursion, exploration.min_displacement, exploration.normal_force, exploration.sigma,
-            exploration.speed_max, exploration.speed_min, exploration.stability_weight, exploration.transfer_s,
-            exploration.update_cycles, gait.abort_position, gait.abort_rotation, gait.acceleration,
-            gait.across_speed, gait.by_need, gait.disc_radius, gait.down_speed, gait.estimator, gait.explore_s,
-            gait.grip_force, gait.hop, gait.hop_force, gait.lag_position, gait.lag_rotation, gait.lead,
-            gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min, gait.margin_wanted,
-            gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode, gait.move_speed, gait.settle_s,
-            gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
-            gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
-            start.joint_sigma_rad, start.object_sigma_m; left out: all parameters.
-        Returns parameters: [{name, value, unit, min, max, description, source}], or one of them.
+        name: the parameter; left out: all parameters.
+        Returns name, value, default, changed, type, unit, min, max, words, size, description, source (of the
+            value), default_source; without a name parameters: [...].
         """
         return self._ask("param.get", {"name": name})
 
+    def param_list(self, group: str | None = None, changed: bool | None = None) -> dict:
+        """Every parameter, a group, or what has been changed.
+        group: only parameters whose names begin so: gait; one of control, exploration, gait, gravity, object,
+            start; left out: all.
+        changed: only parameters that differ from their defaults; left out: false.
+        Returns parameters: [{name, value, ... as param.get}].
+        """
+        return self._ask("param.list", {"group": group, "changed": changed})
+
+    def param_load(self, parameters: dict) -> dict:
+        """Set many parameters at once.
+        parameters: values by name; all are set, or none where one is refused.
+        Returns parameters: [{name, value, ... as param.get}] that were given; kept: {NAME: value} of the others
+            that differ from their defaults.
+        """
+        return self._ask("param.load", {"parameters": parameters})
+
+    def param_reset(self, name: str | None = None) -> dict:
+        """Set parameters back to their defaults.
+        name: the parameter, or the group: gait; left out: all parameters.
+        Returns parameters: [{name, value, before, ...}] that were changed before.
+        """
+        return self._ask("param.reset", {"name": name})
+
     def param_set(self, name: str, value: object) -> dict:
         """Change a parameter.
-        name: the parameter; one of control.close_force, control.close_speed, control.contact_filter_s,
-            control.contact_from_normal, control.drop_distance, control.fingertip_stiffness, control.force_filter_s,
-            control.force_integral_limit, control.free_stiffness, control.friction_estimate, control.grip_force,
-            control.grip_ramp_s, control.grip_weight, control.joint_filter_s, control.limit_margin,
-            control.limit_stiffness, control.margin_filter_s, control.mass_estimate, control.max_normal_force,
-            control.min_normal_force, control.normal_force_integral, control.pinv_damping, control.pose_filter_s,
-            control.position_error_limit, control.position_integral, control.position_stiffness,
-            control.posture_stiffness, control.reapproach_delay_s, control.reapproach_force,
-            control.reapproach_speed, control.residual_limit, control.rotation_error_limit,
-            control.rotation_integral, control.rotation_stiffness, control.settle_s, control.slide_force_limit,
-            control.slide_friction_share, control.slide_stiffness, control.stability_measure,
-            control.stability_threshold, control.stand_in_release_s, control.torque_integral_limit,
-            exploration.clearance, exploration.converged_updates, exploration.dither_hz, exploration.dither_speed,
-            exploration.epsilon, exploration.eta, exploration.forgetting, exploration.gradient_max,
-            exploration.lambda, exploration.least_facing, exploration.limit_margin, exploration.max_cycles,
-            exploration.max_excursion, exploration.min_displacement, exploration.normal_force, exploration.sigma,
-            exploration.speed_max, exploration.speed_min, exploration.stability_weight, exploration.transfer_s,
-            exploration.update_cycles, gait.abort_position, gait.abort_rotation, gait.acceleration,
-            gait.across_speed, gait.by_need, gait.disc_radius, gait.down_speed, gait.estimator, gait.explore_s,
-            gait.grip_force, gait.hop, gait.hop_force, gait.lag_position, gait.lag_rotation, gait.lead,
-            gait.lift_height, gait.lift_speed, gait.limit_margin, gait.margin_min, gait.margin_wanted,
-            gait.max_excursion, gait.max_shift, gait.min_manipulability, gait.mode, gait.move_speed, gait.settle_s,
-            gait.skip_distance, gait.slide_force, gait.slide_gain, gait.slide_speed, gait.speed_rad_s,
-            gait.step_rad, gait.transfer_s, gravity, object.friction, object.mass_kg, start.displacement_m,
-            start.joint_sigma_rad, start.object_sigma_m.
+        name: the parameter.
         value: its new value, of the type and in the range that param.get tells.
-        Returns {name, value, unit, min, max, description, source}.
+        Returns name, value, default, changed, type, unit, min, max, words, size, description, source,
+            default_source.
         """
         return self._ask("param.set", {"name": name, "value": value})
 
@@ -239,9 +218,10 @@ class Methods:
 
     def quality(self) -> dict:
         """Quality of the grasp.
-        Returns tick, time_s, criterion, stability, threshold, load_margin_n, measures, torque_scale_m (mean
-            distance of the contacts from the object's centre; torques are divided by it), fingers: {NAME:
-            {manipulability, load_margin_without_n, joint_limit_margin_rad}}.
+        Returns tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, measures: [NAME]
+            and the value of each by its name, torque_scale_m (mean distance of the contacts from the object's
+            centre; torques are divided by it), fingers: {NAME: {manipulability, load_margin_without_n,
+            joint_limit_margin_rad}}.
         """
         return self._ask("quality", {})
 
@@ -276,15 +256,8 @@ class Methods:
     def reset(self, seed: int | None = None, object: str | None = None) -> dict:
         """Start a new run; parameters and noise levels stay.
         seed: seed of the new run; 0 to 9007199254740992; left out: the present seed.
-        object: another object, by name; one of cube_40mm, cube_45mm, egg, sphere, sphere_40mm, sphere_45mm,
-            sphere_60mm, zoo_box_flat, zoo_box_rounded, zoo_box_tall, zoo_bumpy_five, zoo_bumpy_lopsided,
-            zoo_bumpy_three, zoo_cube_rounded, zoo_cylinder_across, zoo_cylinder_lying, zoo_cylinder_upright,
-            zoo_cylinder_wide, zoo_ellipsoid_flat, zoo_ellipsoid_lying, zoo_ellipsoid_tall,
-            zoo_ellipsoid_three_axes, zoo_hexagon, zoo_knobbly, zoo_lens, zoo_peanut_lying, zoo_peanut_upright,
-            zoo_pear, zoo_pear_lying, zoo_pillow, zoo_square, zoo_superquadric_02, zoo_superquadric_04,
-            zoo_superquadric_06, zoo_superquadric_08, zoo_superquadric_12, zoo_superquadric_14, zoo_triangle; left
-            out: the present object.
-        Returns seed, object.
+        object: another object, by name; left out: the present object.
+        Returns seed, object, changed_parameters: {NAME: value} that stay.
         """
         return self._ask("reset", {"seed": seed, "object": object})
 
@@ -317,8 +290,8 @@ class Methods:
         """State of daemon and simulation.
         Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
             time_s, state_hash, real_time_factor, speed, stepper, tick_p99_s, seed, hand, object, job, gait:
-            {active, phase, finger, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last
-            drop: tick, cause, record, picture; or null), noise, clients, ....
+            {active, phase, finger, state, reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles,
+            regrasps}, incident (the last drop: tick, cause, record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})
 
