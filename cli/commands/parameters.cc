@@ -143,7 +143,7 @@ ExitCode Save(Context& context, const Invocation& invocation) {
   }
   WriteWhole(file, text);
   const std::size_t count = At(answer, "parameters").size();
-  context.Print({{"file", file}, {"parameters", count}}, [&] {
+  context.Print({{"file", file}, {"count", count}}, [&] {
     context.out().Line(fmt::format("{}: {} parameter{}{}", file, count, count == 1 ? "" : "s",
                                    all ? "" : " that differ from the defaults"));
   });
@@ -218,7 +218,9 @@ ExitCode Load(Context& context, const Invocation& invocation) {
   }
   context.Print(answer, [&] {
     Output& out = context.out();
-    for (const Json& p : At(answer, "parameters"))
+    const Json& parameters = At(answer, "parameters");
+    if (parameters.empty()) out.Line(fmt::format("{} sets no parameter", file));
+    for (const Json& p : parameters)
       out.Line(fmt::format("{} = {}", Plain(At(p, "name")), WithUnit(p, "value")));
     const Json& kept = At(answer, "kept");
     if (!kept.empty()) out.Line(fmt::format("changed before, and kept: {}", ChangedText(kept)));

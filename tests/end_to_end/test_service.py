@@ -71,8 +71,8 @@ class Config(Case):
     def test_errors_name_file_line_and_nearest_name(self):
         for text, parts in [("seed = 1\nspede = 2\n", [":2:", "'speed'"]), ("noise = \"papr\"\n", [":1:", "'paper'"]), ("seed = \n", [":1:"]),
                             ("max_clients = 5000\n", ["1 ... 1000"]), ("seed = 'one'\n", [":1:", "seed = 'one': expected an integer"]),
-                            ("[parameters]\nobject.friction = 99\n", [":2:", "object.friction = 99: expected a number, 0.01 ... 1"]),
-                            ("[parameters]\ngravity = [0, 0]\n", [":2:", "gravity = [ 0, 0 ]: expected 3 numbers"])]:
+                            ("[parameters]\nobject.friction = 99\n", [":2:", "object.friction = 99 is out of range; allowed: 0.01 ... 1"]),
+                            ("[parameters]\ngravity = [0, 0]\n", [":2:", "gravity is 3 numbers, not [0, 0]; allowed: 3 numbers, each -50 ... 50 m/s2"])]:
             file = self.write(text)
             cause, hint = self.refused(2, "config", "check", file)
             self.assertTrue(cause.startswith(f"regrasp: {file}:"), cause)
