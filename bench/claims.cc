@@ -64,7 +64,7 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
       std::fprintf(stderr, "claims: unknown parameter %s\n", name.c_str());
       std::exit(2);
     }
-    ParameterTable()[index].set(&config.parameters, Vector3d(value, 0, 0));
+    SetByUser(ParameterTable()[index], Vector3d(value, 0, 0), &config.parameters);
   }
   return config;
 }

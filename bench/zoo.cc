@@ -1,6 +1,6 @@
 // Turns many objects, by several settings, on the same seeds, straight on the session (no daemon):
 //   zoo [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T] [--axis X,Y,Z] [--tilt DEG]
-//       [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N] [--rows]
+//       [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N] [--rows] [--events]
 //       [--setting 'NAME: PARAMETER=VALUE ...'] ...
 // `zoo` (the default): every object of models/objects whose name begins with zoo_, and the cubes.
 // Per setting: full turns, drops, what else failed, deg/min of the completed; per pair of settings:
@@ -42,7 +42,7 @@ struct Options {
   double turns = 1, tilt = -1, push = 0, limit_s = 600;
   Vector3d axis = -Vector3d::UnitZ();
   std::string noise = "paper";
-  bool rows = false;
+  bool rows = false, events = false;
 };
 
 /// What a trial leaves behind; sent through a pipe as it is.
@@ -80,7 +80,7 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
     config.parameters.gravity_W = 9.81 * Vector3d(0, std::cos(t), std::sin(t));
   }
   for (const auto& [name, value] : setting.values)
-    ParameterTable()[FindParameter(name)].set(&config.parameters, Vector3d(value, 0, 0));
+    SetByUser(ParameterTable()[FindParameter(name)], Vector3d(value, 0, 0), &config.parameters);
   return config;
 }
 
@@ -106,6 +106,8 @@ Trial Run(const Options& o, SessionConfig config) {
       }
       session.Tick();
       for (const Event& e : session.TakeEvents()) {
+        if (o.events)
+          std::fprintf(stderr, "%8.3f %s\n", 1e-3 * static_cast<double>(e.tick), e.text);
         trial.slips += e.kind == EventKind::kSlip;
         trial.refused += e.kind == EventKind::kRefused;
       }
@@ -264,8 +266,8 @@ Options Parse(int argc, char** argv) {
   std::string objects = "zoo";
   for (int i = 1; i < argc; ++i) {
     const std::string a = argv[i];
-    if (a == "--rows") {
-      o.rows = true;
+    if (a == "--rows" || a == "--events") {
+      (a == "--rows" ? o.rows : o.events) = true;
       continue;
     }
     if (++i >= argc) throw std::invalid_argument("zoo: " + a + " is no option or needs a value");

@@ -17,6 +17,7 @@ namespace regrasp {
 
 struct ExplorationParameters;
 struct GaitParameters;
+class FeltSurface;
 
 /// Load margins rho of the present grasp from sensed contacts, low-passed with
 /// control.margin_filter_s [N].
@@ -41,6 +42,7 @@ struct ControlTick {
   const Estimate& estimate;
   FingerSet grasp;  ///< the fingers that form the grasp
   const LoadMargins& margins;
+  const FeltSurface& felt;  ///< the object's surface, in O
   const Vector3d& gravity_W;  ///< [m/s²]
   const ControlParameters& control;
   const ExplorationParameters& exploration;

@@ -4,8 +4,10 @@
 /// regrasps (gait_table.h), again and again, until the object has turned as far as wanted.
 
 #include "core/gait/gait_table.h"
+#include "core/gait/landing_plan.h"
 #include "core/gait/local_manipulation.h"
 #include "core/gait/regrasp.h"
+#include "core/gait/stance_plan.h"
 #include "core/gait/stance_search.h"
 
 namespace regrasp {
@@ -22,6 +24,7 @@ enum class GaitPhase : std::uint8_t {
   kFinish,        ///< the object comes to rest
   kDone,
   kFailed,
+  kPlan,  ///< where the next finger shall land
 };
 std::string_view Name(GaitPhase phase);  ///< "object motion", ...
 
@@ -96,7 +99,7 @@ class FingerGait {
   template <typename V>
   void Fields(V& v) {
     v("request", request_);
-    v("phase", phase_, GaitPhase::kFailed);
+    v("phase", phase_, GaitPhase::kPlan);
     v("ticks", ticks_);
     v("stop", stop_);
     v("sign", sign_);
@@ -118,6 +121,23 @@ class FingerGait {
     v("refused_finger", refused_finger_, v.Finger());
     v("sought", sought_);
     v("refused_margin", refused_margin_, kUnbounded);
+    v("plan", plan_);
+    v("landing", landing_);
+    v("room_for", room_for_, v.Finger());
+    v("room_queue", room_queue_);
+    v("stance_plan", stance_plan_);
+    v("stance_queue", stance_queue_);
+    v("caution", caution_);
+    v("error_position", error_position_);
+    v("error_rotation", error_rotation_);
+    v("regrasp_began", regrasp_began_);
+    v("made_room", made_room_);
+    v("sought_for", sought_for_);
+    v("misses", misses_);
+    v("q_start", q_start_);
+    v("p_start", p_start_);
+    v("q_still", q_still_);
+    v("p_still", p_still_);
     v("cycles", cycles_);
     v("regrasps", regrasps_);
     v("happened", happened_);
@@ -126,20 +146,40 @@ class FingerGait {
 
  private:
   void Enter(GaitPhase phase);
+  /// Landings are planned: not while the others only make room for an exploring finger.
+  bool planned(const ControlTick& tick) const {
+    return tick.gait.plan && request_.make_room_for < 0;
+  }
   double manipulation_turned() const {
     return phase_ == GaitPhase::kObjectMotion ? manipulation_.travelled() : 0.0;
   }
   void SearchStance(const ControlTick& tick);
   void Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench);
-  void StartMotion(const GaitParameters& parameters);
+  void StartMotion(const GaitParameters& parameters, const ObjectWrench& wrench);
   void EndMotion();
+  /// The same with landings planned on the felt surface: a refused finger waits; when only refused
+  /// ones are left, the others make room for one of them.
+  void NextPlanned(const ControlTick& tick, const ObjectWrench& wrench);
+  void StartPlan(int finger, double reach, const ControlTick& tick);
+  void EndPlan(const ControlTick& tick);
+  Regrasp::Request RequestOf(const GaitStep& step, int next, const ControlTick& tick) const;
+  /// The margin without it suffices, and every other finger stands still on the object.
+  bool MayLeave(const ControlTick& tick, int finger) const;
+  void StartRegrasp(const ControlTick& tick, int finger, const Landing& landing);
+  /// The stance plan is made: its contacts are taken by those that may leave.
+  void EndStancePlan(const ControlTick& tick);
+  /// The regrasp has gone wrong: at once where the object moves while the finger leaves.
+  bool MustBreakOff(const ControlTick& tick, const ObjectWrench& wrench);
+  double ReserveOf(const ControlTick& tick, int finger) const;
+  bool Unsteady(const ControlTick& tick) const;
+  /// The reference gives up what lasts of an error, and books the twist of it.
+  void Forgive(const ControlTick& tick, ObjectWrench* wrench);
   /// Picks the next finger that shall and may leave, or starts the next object motion.
   void Next(const ControlTick& tick, const ObjectWrench& wrench);
-  void EndCycle(const ControlTick& tick);
+  void EndCycle(const ControlTick& tick, const ObjectWrench& wrench);
   /// Where the finger comes back to, from the object reference: its first contact, turned back.
   StanceContact HomeOf(int finger, const GaitParameters& parameters) const;
-  Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench,
-                           const GaitParameters& parameters) const;
+  Regrasp::Target TargetOf(int finger, const ObjectWrench& wrench, const ControlTick& tick) const;
   /// How much of the exploring disc is free: all of it while the grasp without the opposing finger
   /// has the load margin that is wanted, nothing where it has hardly the one that is needed.
   double DiscShare(const ControlTick& tick) const;
@@ -175,6 +215,22 @@ class FingerGait {
   int refused_finger_ = -1;  // in this cycle
   bool sought_ = false;      // another stance, in this cycle
   double refused_margin_ = 0;
+  LandingPlan plan_;
+  std::array<Landing, kMaxFingers> landing_{};  // the last one of each finger
+  int room_for_ = -1;                           // the finger for which the others make room now
+  FingerSet room_queue_;                        // that have not tried yet
+  StancePlan stance_plan_;
+  FingerSet stance_queue_;  // fingers that shall take their place in it
+  // Load margin asked for beyond gait.margin_min, after a load transfer that moved the object [N].
+  std::array<double, kMaxFingers> caution_{};
+  double error_position_ = 0, error_rotation_ = 0;  // when the regrasp began [m, rad]
+  bool regrasp_began_ = false;
+  FingerSet made_room_, sought_for_;               // in this cycle, for which fingers
+  int misses_ = 0;                                 // in a row
+  Quaterniond q_start_ = Quaterniond::Identity();  // reference when the rotation began
+  Vector3d p_start_ = Vector3d::Zero();
+  Quaterniond q_still_ = Quaterniond::Identity();  // sensed, some time before a recovery ends
+  Vector3d p_still_ = Vector3d::Zero();
   int cycles_ = 0, regrasps_ = 0;
   Happened happened_;
   char error_[160] = {};

@@ -11,12 +11,27 @@ enum class GaitMode : int {
 };
 inline constexpr std::array<std::string_view, 2> kGaitModeNames = {"exploring", "returning"};
 
+/// Whole sets of gait parameters (values of gait.preset).
+enum class GaitPreset : int {
+  kPlanned = 0,  ///< the default: landings planned on the felt surface
+  kPaper = 1,    ///< the paper's: fingers explore about their first contacts, nothing is planned
+};
+inline constexpr std::array<std::string_view, 2> kGaitPresetNames = {"planned", "paper"};
+
 /// Constants of the local manipulation controller and the finger gait. Unit, range and source of
 /// each stand in the parameter table (core/session/parameters.cc).
 struct GaitParameters {
+  GaitPreset preset = GaitPreset::kPlanned;  ///< the last one taken; what it sets may be changed
   GaitMode mode = GaitMode::kReturning;
   bool by_need = false;  ///< the finger farthest from its target first, else the order of the table
   bool hop = true;       ///< a finger hops to its target, else it slides
+  bool plan = true;      ///< landings are planned on the felt surface, else at the first contacts
+  bool forgive = true;   ///< the reference follows an error that lasts
+  double reserve_wanted = 0.6;  ///< plan: motion reserve that counts in full [rad]
+  double doubt =
+      0.5;  ///< of the spread of felt normals about a contact: its normal may be so far off
+  double careful_s =
+      0.1;  ///< plan: load transfer where the margin without the finger is scarce [s]
   // Object motion.
   double speed_rad_s = 0.3490658504;  ///< object speed during its motion phase (20 deg/s)
   double move_speed = 0.010;          ///< object speed along a shift [m/s]
@@ -27,11 +42,11 @@ struct GaitParameters {
   double min_manipulability =
       0.25;  ///< ... with a finger below this share of its first manipulability
   double max_excursion =
-      0.016;  ///< ... with a contact this far from its first place in the palm [m]
+      0.035;  ///< ... with a contact this far from its first place in the palm [m]
   double lag_position = 0.002;  ///< the reference waits while the object is this far behind [m]
   double lag_rotation = 0.12;   ///< ... or so much [rad]
   // When a finger may leave.
-  double margin_min = 0.10;  ///< rho_min: least load margin of the grasp without it [N]
+  double margin_min = 0.25;  ///< rho_min: least load margin of the grasp without it [N]
   double margin_wanted =
       0.80;  ///< below it contacts are sought that allow more without the opposing finger [N]
   double max_shift = 0.006;       ///< ... so far from the present ones [m]

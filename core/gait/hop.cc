@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/shape/felt_surface.h"
+
 namespace regrasp {
 namespace {
 
-constexpr double kThere = 1e-6;  // m: nearer than this a moving target has arrived
+constexpr double kThere = 1e-6;          // m: nearer than this a moving target has arrived
+constexpr double kThereOnObject = 5e-4;  // m: the same on the object, as noisy as its pose
+constexpr double kAirLimit_s = 1.0;      // over the felt surface: then it comes down anyway
+constexpr double kClearShare = 0.8;      // of the lift: so far above the felt surface it crosses
+constexpr double kLeastSlope = 0.5;  // n . d: steeper than that the height counts as at this slope
+constexpr double kMostRise = 0.010;  // [m]
+constexpr double kSeekWay = 0.025;   // [m]
 
 /// Unit direction at `from` of the arc to `to` about the origin: the angle and the distance from
 /// the origin change in proportion. Zero where they coincide.
@@ -29,16 +37,23 @@ bool Touches(const ControlTick& tick, const FingerEstimate& finger) {
 
 }  // namespace
 
-void Hop::Start(const FingerEstimate& finger) {
+void Hop::Start(const ControlTick& tick, int finger, bool over_surface) {
   *this = Hop();
-  p_target_W_ = finger.p_WF;
-  normal_W_ = finger.normal_W;
+  const FingerEstimate& f = tick.finger(finger);
+  finger_ = finger;
+  over_surface_ = over_surface;
+  p_target_W_ = f.p_WF;
+  normal_W_ = f.normal_W;
+  const Quaterniond q_OW = tick.estimate.q_WO.conjugate();
+  p_OLeft_ = q_OW * (f.p_WF - tick.estimate.p_WO);
+  normal_OLeft_ = q_OW * f.normal_W;
   Enter(Phase::kLift);
 }
 
 void Hop::Enter(Phase phase) {
   phase_ = phase;
   path_ = 0;
+  ticks_ = 0;
 }
 
 void Hop::Reach(const Vector3d& velocity, double dt, FingerTask* task) {
@@ -49,9 +64,21 @@ void Hop::Reach(const Vector3d& velocity, double dt, FingerTask* task) {
   task->v_target_W = velocity;
 }
 
-void Hop::Update(const ControlTick& tick, const FingerEstimate& finger, const Target& target,
-                 bool down, FingerTask* task) {
+void Hop::KeepAbove(const ControlTick& tick) {
+  const Estimate& estimate = tick.estimate;
+  const Vector3d r = p_target_W_ - estimate.p_WO;
+  const Vector3d d = r.normalized();
+  const SurfacePoint surface = tick.felt.At(estimate.q_WO.conjugate() * d);
+  const double slope = std::max(kLeastSlope, (estimate.q_WO * surface.normal_O).dot(d));
+  const double height = tick.hand.fingers[finger_].tip_radius + kClearShare * tick.gait.lift_height;
+  const double radius = surface.p_O.norm() + std::min(height / slope, height + kMostRise);
+  const double rise = std::min(radius - r.norm(), tick.gait.across_speed * tick.dt);
+  if (rise > 0) p_target_W_ += rise * d;
+}
+
+void Hop::Update(const ControlTick& tick, const Target& target, bool down, FingerTask* task) {
   const GaitParameters& parameters = tick.gait;
+  ++ticks_;
   if (phase_ == Phase::kLift) {
     Reach(parameters.lift_speed * normal_W_, tick.dt, task);
     if (down) {
@@ -60,22 +87,30 @@ void Hop::Update(const ControlTick& tick, const FingerEstimate& finger, const Ta
       Enter(Phase::kAcross);
     }
   } else if (phase_ == Phase::kAcross) {
-    Across(tick, finger, target, down, task);
+    Across(tick, target, down, task);
   } else if (phase_ == Phase::kDown) {
     Reach(-parameters.down_speed * normal_W_, tick.dt, task);
-    if (Touches(tick, finger) || path_ > parameters.lift_height + parameters.land_depth)
+    if (Touches(tick, tick.finger(finger_)))
       Enter(Phase::kLanded);
+    else if (path_ > parameters.lift_height + parameters.land_depth)
+      Enter(over_surface_ && !went_back_ ? Phase::kSeek : Phase::kLanded);
+  } else if (phase_ == Phase::kSeek) {
+    Seek(tick, task);
+  } else if (phase_ == Phase::kGoBack) {
+    GoBack(tick, task);
   }
 }
 
-void Hop::Across(const ControlTick& tick, const FingerEstimate& finger, const Target& target,
-                 bool down, FingerTask* task) {
+void Hop::Across(const ControlTick& tick, const Target& target, bool down, FingerTask* task) {
   const GaitParameters& parameters = tick.gait;
+  const FingerEstimate& finger = tick.finger(finger_);
   const Vector3d above = target.p_WF + parameters.lift_height * target.normal_W;
   const double distance = (above - p_target_W_).norm();
   const double speed = std::min(parameters.across_speed, distance / tick.dt);
   Reach(speed * ArcDirection(p_target_W_ - target.p_WO, above - target.p_WO), tick.dt, task);
-  late_ticks_ = distance > kThere ? 0 : late_ticks_ + 1;
+  if (over_surface_ && distance > 2 * parameters.lift_height) KeepAbove(tick);
+  const double there = over_surface_ ? kThereOnObject : kThere;
+  late_ticks_ = distance > there ? 0 : late_ticks_ + 1;
   // Something is in the way: the finger stands where it touches, rather than push the object.
   if (Touches(tick, finger) && path_ > parameters.clear_distance) {
     Enter(Phase::kBlocked);
@@ -83,8 +118,40 @@ void Hop::Across(const ControlTick& tick, const FingerEstimate& finger, const Ta
   }
   const bool near = (above - finger.p_WF).norm() < parameters.land_distance;
   const bool late = late_ticks_ * tick.dt > parameters.land_late_s;
-  if (down || (distance <= kThere && (near || late))) {
+  const bool long_in_air = over_surface_ && ticks_ * tick.dt > kAirLimit_s;
+  if (down || long_in_air || (distance <= there && (near || late))) {
     normal_W_ = target.normal_W;
+    const Quaterniond& q_WO = tick.estimate.q_WO;
+    if (over_surface_ && distance > parameters.land_distance)
+      normal_W_ =
+          q_WO * tick.felt.At(q_WO.conjugate() * (finger.p_WF - tick.estimate.p_WO)).normal_O;
+    Enter(Phase::kDown);
+  }
+}
+
+void Hop::Seek(const ControlTick& tick, FingerTask* task) {
+  const Vector3d way = tick.estimate.p_WO - p_target_W_;
+  Reach(tick.gait.down_speed * way.normalized(), tick.dt, task);
+  if (Touches(tick, tick.finger(finger_)))
+    Enter(Phase::kLanded);
+  else if (path_ > kSeekWay || way.norm() < tick.hand.fingers[finger_].tip_radius)
+    Enter(Phase::kGoBack);
+}
+
+void Hop::GoBack(const ControlTick& tick, FingerTask* task) {
+  const GaitParameters& parameters = tick.gait;
+  const Vector3d& p_WO = tick.estimate.p_WO;
+  const Vector3d normal_W = tick.estimate.q_WO * normal_OLeft_;
+  const Vector3d above = p_WO + tick.estimate.q_WO * p_OLeft_ + parameters.lift_height * normal_W;
+  const double distance = (above - p_target_W_).norm();
+  const double speed = std::min(parameters.across_speed, distance / tick.dt);
+  went_back_ = true;
+  Reach(speed * ArcDirection(p_target_W_ - p_WO, above - p_WO), tick.dt, task);
+  KeepAbove(tick);
+  if (Touches(tick, tick.finger(finger_)) && path_ > parameters.clear_distance) {
+    Enter(Phase::kLanded);
+  } else if (distance < parameters.land_distance || ticks_ * tick.dt > kAirLimit_s) {
+    normal_W_ = normal_W;
     Enter(Phase::kDown);
   }
 }

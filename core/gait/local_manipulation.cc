@@ -8,6 +8,8 @@ namespace regrasp {
 namespace {
 
 constexpr double kDamping = 1e-6;  // m²: of the joint rates (1 mm)
+constexpr double kMarginCounts = 0.2;  // of the way, from which on a margin in doubt ends it
+constexpr double kMarginShare = 0.25;  // of gait.margin_min, for that
 constexpr double kStuck_s = 0.5;
 constexpr double kStuckYielding_s = 1.0;  // a finger that begins to slip takes its time
 constexpr double kMovesTurning = 0.3;     // rad per rad of the object
@@ -86,7 +88,11 @@ LocalManipulation::End LocalManipulation::FindEnd(const ControlTick& tick, const
     if (excursion.norm() > tick.gait.max_excursion && excursion.dot(v) > 0) return End::kExcursion;
   }
   end_finger_ = -1;
-  return tick.margins.all < tick.gait.margin_min ? End::kMargin : End::kNone;
+  // On a planned stance the margin counts what is in doubt: it ends a motion that has made it
+  // worse.
+  const bool far = !tick.gait.plan || travelled_ > kMarginCounts * length_;
+  const double least = tick.gait.margin_min * (tick.gait.plan ? kMarginShare : 1.0);
+  return far && tick.margins.all < least ? End::kMargin : End::kNone;
 }
 
 ObjectMotion LocalManipulation::Update(const ControlTick& tick, const ObjectWrench& wrench,

@@ -15,6 +15,10 @@ std::string_view Name(Regrasp::Phase phase) {
       return "across";
     case Phase::kDown:
       return "down";
+    case Phase::kSeek:
+      return "seek";
+    case Phase::kGoBack:
+      return "go back";
     case Phase::kSlide:
       return "slide";
     case Phase::kSettle:
@@ -54,9 +58,11 @@ Regrasp::Phase Regrasp::phase() const {
       return Phase::kUnload;
     case GuidedSlide::Phase::kAway:
       if (!request_.hop) return Phase::kSlide;
-      return hop_.phase() == Hop::Phase::kAcross ? Phase::kAcross
-             : hop_.phase() == Hop::Phase::kDown ? Phase::kDown
-                                                 : Phase::kLift;
+      return hop_.phase() == Hop::Phase::kAcross   ? Phase::kAcross
+             : hop_.phase() == Hop::Phase::kDown   ? Phase::kDown
+             : hop_.phase() == Hop::Phase::kSeek   ? Phase::kSeek
+             : hop_.phase() == Hop::Phase::kGoBack ? Phase::kGoBack
+                                                   : Phase::kLift;
     case GuidedSlide::Phase::kSettle:
       return Phase::kSettle;
     case GuidedSlide::Phase::kRecall:
@@ -79,7 +85,8 @@ void Regrasp::Update(const ControlTick& tick, const Target& target, HybridContro
   const bool away = slide_.phase() == GuidedSlide::Phase::kAway;
   const GaitParameters& parameters = tick.gait;
   SlideProfile profile;
-  profile.transfer_s = parameters.transfer_s;
+  profile.transfer_s =
+      slide_.phase() == GuidedSlide::Phase::kUnload ? request_.transfer_s : parameters.transfer_s;
   profile.leave_force = request_.hop ? parameters.hop_force : parameters.slide_force;
   profile.grip_force = parameters.grip_force;
   profile.settle_s = parameters.explore_settle_s;
@@ -90,7 +97,7 @@ void Regrasp::Update(const ControlTick& tick, const Target& target, HybridContro
   if (away) {
     Travel(tick, target, &(*tasks)[finger()]);
   } else if (request_.hop && slide_.phase() == GuidedSlide::Phase::kAway) {
-    hop_.Start(tick.finger(finger()));
+    hop_.Start(tick, finger(), request_.over_surface);
   }
 }
 
@@ -99,8 +106,7 @@ void Regrasp::Travel(const ControlTick& tick, const Target& target, FingerTask* 
     if (SlideOver(tick, target, task)) slide_.Land(request_.explore);
     return;
   }
-  hop_.Update(tick, tick.finger(finger()), {target.p_WF, target.normal_W, target.p_WO}, aborted_,
-              task);
+  hop_.Update(tick, {target.p_WF, target.normal_W, target.p_WO}, aborted_, task);
   if (hop_.phase() == Hop::Phase::kLanded) slide_.Land(request_.explore);
   if (hop_.phase() == Hop::Phase::kBlocked) slide_.Land(false);
 }

@@ -18,6 +18,8 @@ class Regrasp {
     kLift,     ///< off the surface
     kAcross,   ///< above the surface, to above the target
     kDown,     ///< until it touches
+    kSeek,     ///< nothing there: towards the object's centre
+    kGoBack,   ///< nor there: to above where it left, then down again
     kSlide,    ///< over the surface to the target, or
     kSettle,   ///< explore: presses with the exploring force until the filters follow
     kRecall,   ///< explore: slides to where the finger's last explorations ended
@@ -31,6 +33,8 @@ class Regrasp {
     GuidedSlide::Request slide;  ///< finger, objective, seed; `leaves` is always true
     bool hop = true;             ///< otherwise it slides
     bool explore = false;
+    bool over_surface = false;  ///< a hop keeps above the felt surface, and a miss is sought
+    double transfer_s = 0.03;   ///< load transfer before it leaves [s]
     double disc_share = 1;  ///< explore: of gait.disc_radius, within which the new contact may be
     template <typename V>
     void Fields(V& v) {
@@ -38,6 +42,8 @@ class Regrasp {
       v("hop", hop);
       v("explore", explore);
       v("disc_share", disc_share);
+      v("over_surface", over_surface);
+      v("transfer_s", transfer_s);
     }
   };
   /// Where the finger shall go, in W; follows the object's reference position.

@@ -43,8 +43,9 @@ class ConeSimplex {
         rows_(kRows != Eigen::Dynamic ? kRows : 6 + static_cast<int>(contacts.size())),
         cap_(cap) {}
 
-  /// Phase 1: a basis of real columns with sum of wrenches = target. False where there is none.
-  bool Reach(const Vector6d& target) {
+  /// Phase 1: a basis of real columns with sum of wrenches = target. False where there is none;
+  /// with `shortfall` only after the least sum of missing components has been found.
+  bool Reach(const Vector6d& target, double* shortfall) {
     inverse_.setIdentity(rows_, rows_);
     x_.setConstant(rows_, cap_);
     for (int k = 0; k < 6; ++k) {
@@ -65,7 +66,9 @@ class ConeSimplex {
       }
       if (!any) return true;
       const double gain = -Price();
-      if (gain * squeeze < rest || gain < kPivot) return false;
+      if (shortfall != nullptr) *shortfall = rest;
+      if (gain < kPivot || (shortfall == nullptr ? gain * squeeze < rest : gain * squeeze < kGap))
+        return false;
       const int leaving = RatioTest();
       if (leaving < 0) return false;
       Pivot(leaving);
@@ -201,7 +204,7 @@ std::array<T, sizeof...(k)> Copies(const T& value, std::index_sequence<k...>) {
 
 template <int kRows>
 double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, double torque_scale,
-             double max_force) {
+             double max_force, bool is_signed) {
   const double norm = weight.norm();
   const double unit = norm > 0 ? norm : 1.0;
   Vector6d target;
@@ -213,7 +216,8 @@ double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, dou
 
   ConeSimplex<kRows> start(contacts, torque_scale,
                            max_force < kUncapped ? max_force / unit : max_force);
-  if (!start.Reach(target)) return 0.0;
+  double shortfall = 0;
+  if (!start.Reach(target, is_signed ? &shortfall : nullptr)) return -shortfall * unit;
   // Always on with the direction that has come least far: none goes beyond the least of all.
   std::array<ConeSimplex<kRows>, 12> directions = Copies(start, std::make_index_sequence<12>());
   for (int k = 0; k < 12; ++k)
@@ -228,17 +232,29 @@ double Solve(std::span<const GraspContact> contacts, const Vector3d& weight, dou
   return margin * unit;
 }
 
+double Margin(std::span<const GraspContact> contacts, const Vector3d& weight, double torque_scale,
+              double max_force, bool is_signed) {
+  const auto solve = [&]<int kRows>() {
+    return Solve<kRows>(contacts, weight, torque_scale, max_force, is_signed);
+  };
+  if (!(max_force < kUncapped)) return solve.operator()<6>();
+  // An even number of rows: two at a time fit a register.
+  if (contacts.size() <= 4) return solve.operator()<10>();
+  if (contacts.size() <= 6) return solve.operator()<12>();
+  if (contacts.size() <= kMaxFingers) return solve.operator()<6 + kMaxFingers>();
+  return solve.operator()<Eigen::Dynamic>();
+}
+
 }  // namespace
 
 double LoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
                   double torque_scale, double max_force) {
-  if (!(max_force < kUncapped)) return Solve<6>(contacts, weight, torque_scale, max_force);
-  // An even number of rows: two at a time fit a register.
-  if (contacts.size() <= 4) return Solve<10>(contacts, weight, torque_scale, max_force);
-  if (contacts.size() <= 6) return Solve<12>(contacts, weight, torque_scale, max_force);
-  if (contacts.size() <= kMaxFingers)
-    return Solve<6 + kMaxFingers>(contacts, weight, torque_scale, max_force);
-  return Solve<Eigen::Dynamic>(contacts, weight, torque_scale, max_force);
+  return Margin(contacts, weight, torque_scale, max_force, false);
+}
+
+double SignedLoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
+                        double torque_scale, double max_force) {
+  return Margin(contacts, weight, torque_scale, max_force, true);
 }
 
 }  // namespace regrasp

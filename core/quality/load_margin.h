@@ -26,4 +26,10 @@ namespace regrasp {
 double LoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
                   double torque_scale, double max_force = 1e30);
 
+/// LoadMargin(), but negative where the contacts cannot hold the weight: minus the least sum of the
+/// components of wrench (torques divided by torque_scale) by which they miss it [N]. For searches,
+/// which must see whether they come nearer.
+double SignedLoadMargin(std::span<const GraspContact> contacts, const Vector3d& weight,
+                        double torque_scale, double max_force = 1e30);
+
 }  // namespace regrasp

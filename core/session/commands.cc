@@ -195,7 +195,7 @@ void Session::Impl::ApplyParameters() {
 
 void Session::Impl::SetParameter(const Command& command) {
   const ParameterInfo& info = ParameterTable()[command.parameter];
-  info.set(&parameters, command.value);
+  SetByUser(info, command.value, &parameters);
   ApplyParameters();
   const Vector3d& v = command.value;
   const auto name = static_cast<int>(info.name.size());

@@ -209,6 +209,12 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.slide_arrived", "m", 5e-05, 0.005, "A slide to the target ends this near.", kOurs, [](P& p) { return &p.gait.slide_arrived; }),
   Row("gait.slide_limit_s", "s", 0.05, 20, "Longest slide to the target.", kOurs, [](P& p) { return &p.gait.slide_limit_s; }),
   Row("gait.touch_s", "s", 0.001, 0.1, "Hop: a landing counts after so long in contact.", kMeasured, [](P& p) { return &p.gait.touch_s; }),
+  Row("gait.careful_s", "s", 0.001, 2, "Planned landings: load transfer of a finger without which the load margin is below gait.margin_wanted.", kMeasured, [](P& p) { return &p.gait.careful_s; }),
+  Row("gait.doubt", "", 0, 2, "A contact's normal may be off by this share of the spread of the normals felt about it, which costs load margin.", kMeasured, [](P& p) { return &p.gait.doubt; }),
+  Row("gait.forgive", "The object's reference follows an error that lasts, and later motions win it back.", kMeasured, [](P& p) { return &p.gait.forgive; }),
+  Row("gait.plan", "Where a finger lands is planned on the felt surface, instead of at its first contact.", kMeasured, [](P& p) { return &p.gait.plan; }),
+  Row("gait.preset", kGaitPresetNames, "Sets gait.mode, plan, forgive, margin_min and max_excursion: planned landings, or the paper's gait.", kOurs, [](P& p) { return &p.gait.preset; }),
+  Row("gait.reserve_wanted", "rad", 0, 3, "Planned landings: motion reserve that counts in full.", kMeasured, [](P& p) { return &p.gait.reserve_wanted; }),
   Row("gravity", "m/s2", -50, 50, "Gravity in W: turning it is tilting the palm.", kOurs, [](P& p) { return &p.gravity_W; }),
   Row("object.friction", "", 0.01, 1, "True friction coefficient of every contact.", "object model", [](P& p) { return &p.object.friction; }),
   Row("object.mass_kg", "kg", 0.001, 2, "True mass of the object.", "object model", [](P& p) { return &p.object.mass_kg; }),
@@ -244,6 +250,18 @@ int FindParameter(std::string_view name) {
   for (std::size_t i = 0; i < table.size(); ++i)
     if (table[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+void SetByUser(const ParameterInfo& info, const Vector3d& value, Parameters* parameters) {
+  info.set(parameters, value);
+  if (info.name != "gait.preset") return;
+  GaitParameters& gait = parameters->gait;
+  const GaitParameters planned;
+  const bool paper = gait.preset == GaitPreset::kPaper;
+  gait.mode = paper ? GaitMode::kExploring : planned.mode;
+  gait.plan = gait.forgive = !paper;
+  gait.margin_min = paper ? 0.10 : planned.margin_min;
+  gait.max_excursion = paper ? 0.016 : planned.max_excursion;
 }
 
 Parameters DefaultParameters(const LoadedScenario& model) {

@@ -72,6 +72,10 @@ struct LoadedScenario;
 /// scenario.
 Parameters DefaultParameters(const LoadedScenario& model);
 
+/// Sets one parameter as a user does: gait.preset sets those it stands for, too. The value must be
+/// allowed.
+void SetByUser(const ParameterInfo& info, const Vector3d& value, Parameters* parameters);
+
 /// Sorted by name.
 std::span<const ParameterInfo> ParameterTable();
 /// Index into the table, or -1.

@@ -1,12 +1,15 @@
 #include "core/session/quality_monitor.h"
 
+#include "core/gait/gait_parameters.h"
+#include "core/gait/sure_grasp.h"
 #include "core/quality/load_margin.h"
 
 namespace regrasp {
 
-void QualityMonitor::Update(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
-                            const ControlParameters& parameters, double dt) {
-  const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
+void QualityMonitor::Update(const ControlTick& now) {
+  const Estimate& estimate = now.estimate;
+  const ControlParameters& parameters = now.control;
+  const Grasp grasp = GraspOf(estimate, now.grasp, parameters.friction_estimate);
   const double scale = estimate.object_scale;
   MeasureInput input({grasp.data(), grasp.size()}, scale, kEpsilonEdges);
   for (std::size_t i = 0; i < kNumFrameMeasures; ++i)
@@ -16,25 +19,24 @@ void QualityMonitor::Update(const Estimate& estimate, FingerSet fingers, const V
 
   if (++tick_ >= kMarginInterval) {
     tick_ = 0;
-    UpdateMargin(estimate, fingers, gravity_W, parameters);
+    UpdateMargin(now);
   } else {
     UpdateEpsilon(grasp, scale);
   }
-  SmoothMargins(dt / (parameters.margin_filter_s + dt));
+  SmoothMargins(now.dt / (parameters.margin_filter_s + now.dt));
 
   stability_.measure = parameters.stability_measure;
   stability_.active = stability_.of(stability_.measure);
 }
 
-void QualityMonitor::UpdateMargin(const Estimate& estimate, FingerSet fingers,
-                                  const Vector3d& gravity_W, const ControlParameters& parameters) {
-  const Vector3d weight = parameters.mass_estimate * gravity_W;
-  const int num_fingers = static_cast<int>(estimate.fingers.size());
-  const bool whole = turn_ >= num_fingers;
-  const FingerSet rest = whole ? fingers : fingers.without(turn_);
-  const Grasp grasp = GraspOf(estimate, rest, parameters.friction_estimate);
-  const double rho = LoadMargin({grasp.data(), grasp.size()}, weight, estimate.object_scale,
-                                parameters.max_normal_force);
+void QualityMonitor::UpdateMargin(const ControlTick& now) {
+  const bool whole = turn_ >= now.hand.num_fingers();
+  const FingerSet rest = whole ? now.grasp : now.grasp.without(turn_);
+  const Grasp grasp = SureGraspOf(now.estimate, rest, now.control.friction_estimate, now.felt,
+                                  now.gait.plan ? now.gait.doubt : 0.0);
+  const double rho =
+      LoadMargin({grasp.data(), grasp.size()}, now.control.mass_estimate * now.gravity_W,
+                 now.estimate.object_scale, now.control.max_normal_force);
   (whole ? stability_.load_margin : load_margin_without_[turn_]) = rho;
   turn_ = whole ? 0 : turn_ + 1;
 }

@@ -21,9 +21,7 @@ class QualityMonitor {
   static constexpr int kMaxEpsilonSteps = 10000;       ///< more are never needed
   static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
 
-  /// `fingers`: those that form the grasp. gravity_W [m/s²]; dt [s].
-  void Update(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
-              const ControlParameters& parameters, double dt);
+  void Update(const ControlTick& now);
   /// Epsilon is of the grasp some 0.1 s ago.
   const StabilityFrame& stability() const { return stability_; }
   /// Load margins for the controllers: low-passed.
@@ -46,8 +44,7 @@ class QualityMonitor {
   }
 
  private:
-  void UpdateMargin(const Estimate& estimate, FingerSet fingers, const Vector3d& gravity_W,
-                    const ControlParameters& parameters);
+  void UpdateMargin(const ControlTick& now);
   void SmoothMargins(double gain);
   void UpdateEpsilon(const Grasp& grasp, double torque_scale);
   void BeginEpsilon();

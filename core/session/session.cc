@@ -60,6 +60,7 @@ ActivityContext Session::Impl::Context() {
                         estimator.estimate(),
                         GraspFingers(),
                         monitor.margins(),
+                        felt,
                         parameters.gravity_W,
                         parameters.control,
                         parameters.exploration,
@@ -122,8 +123,7 @@ void Session::Impl::Tick() {
   times.sense_s = clock.Lap();
 
   Feel();
-  monitor.Update(estimator.estimate(), GraspFingers(), parameters.gravity_W, parameters.control,
-                 dt);
+  monitor.Update(Context().now);
   WatchContacts();
   WatchDrop();
   if (push_until >= 0 && tick >= push_until) {

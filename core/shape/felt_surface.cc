@@ -14,7 +14,7 @@ constexpr double kSteepest = 1.2;       // |g_i| at most
 constexpr double kPriorAngle2 = 0.25;   // the mean counts as if felt this far away [rad²]
 constexpr double kLeastCos = 0.15;      // n . u of a contact that can be on a star-shaped body
 constexpr double kLeastRadius = 0.001;  // [m]
-constexpr double kBendReach2 = 0.15 * 0.15;  // normals within about this are compared [rad²]
+constexpr double kBendReach2 = 0.10 * 0.10;  // normals within about this are compared [rad²]
 
 double Weight(double angle2) {
   const double x = angle2 + kNear2;
@@ -102,7 +102,7 @@ SurfacePoint FeltSurface::At(const Vector3d& d_O) const {
     normal += w * turned.normalized();
     if (angle2 < kBendReach2) {
       near_weights += confidence;
-      near_normals += confidence * n;
+      near_normals += confidence * cell.normal_sum;  // shorter than 1 where it bends inside
     }
   }
   result.p_O = std::exp(log_radius / weights) * d;
@@ -111,6 +111,23 @@ SurfacePoint FeltSurface::At(const Vector3d& d_O) const {
   if (near_weights > 0)
     result.bend = std::sqrt(std::max(0.0, 2.0 * (1.0 - near_normals.norm() / near_weights)));
   return result;
+}
+
+double FeltSurface::BendAt(const Vector3d& d_O) const {
+  const Vector3d d = d_O.normalized();
+  Vector3d normals = Vector3d::Zero();
+  double weights = 0;
+  for (int k = 0; k < num_touched_; ++k) {
+    const Cell& cell = cells_[touched_[k]];
+    // The sum is shorter than a unit vector by no more than a cell's width: near enough to sort
+    // out.
+    if (d.dot(cell.direction_sum) < 1.0 - kBendReach2) continue;
+    if (2.0 * (1.0 - d.dot(cell.direction_sum.normalized())) >= kBendReach2) continue;
+    const double confidence = std::min(1.0, cell.count / static_cast<double>(kFull));
+    weights += confidence;
+    normals += confidence * cell.normal_sum;
+  }
+  return weights > 0 ? std::sqrt(std::max(0.0, 2.0 * (1.0 - normals.norm() / weights))) : 0.0;
 }
 
 double FeltSurface::mean_radius() const {

@@ -57,6 +57,8 @@ class FeltSurface {
   void Add(const Vector3d& p_O, const Vector3d& normal_O);
   /// The surface in direction `d` (any length > 0). Some microseconds; no allocation.
   SurfacePoint At(const Vector3d& d_O) const;
+  /// SurfacePoint::bend alone, at a tenth of the cost; 0 where nothing was felt nearby.
+  double BendAt(const Vector3d& d_O) const;
   void Reset() { *this = FeltSurface(); }
 
   int touched_cells() const { return num_touched_; }

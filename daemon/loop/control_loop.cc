@@ -20,7 +20,8 @@ void CopyText(char (&target)[N], const char* text) {
 }  // namespace
 
 void SetParameter(Parameters* parameters, const Command& command) {
-  ParameterTable()[static_cast<std::size_t>(command.parameter)].set(parameters, command.value);
+  SetByUser(ParameterTable()[static_cast<std::size_t>(command.parameter)], command.value,
+            parameters);
 }
 
 Parameters ParametersAfterReset(Parameters parameters, const ObjectModel* new_object) {

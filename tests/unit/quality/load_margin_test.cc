@@ -224,5 +224,28 @@ TEST(LoadMargin, NeverFallsWhenAContactIsAdded) {
   }
 }
 
+// Without contacts the whole weight is missing; contacts that nearly hold it miss less than those
+// that hold it not at all; where it is held the sign changes nothing.
+TEST(SignedLoadMargin, TellsHowMuchIsMissing) {
+  const Vector3d weight(0, 0, -0.8);
+  EXPECT_NEAR(SignedLoadMargin({}, weight, 0.025, 4.0), -0.8, 1e-4);
+  const auto Pinch = [](double mu) {
+    Grasp grasp;
+    for (const double side : {-1.0, 1.0})
+      for (const double shift : {-0.004, 0.004})
+        grasp.push_back({Vector3d(0.02 * side, shift, 0), Vector3d(-side, 0, 0), mu});
+    return grasp;
+  };
+  const Grasp smooth = Pinch(0.01), rougher = Pinch(0.03), rough = Pinch(0.5);
+  const auto Signed = [&](const Grasp& grasp) {
+    return SignedLoadMargin({grasp.data(), grasp.size()}, weight, 0.025, 4.0);
+  };
+  EXPECT_LT(Signed(smooth), Signed(rougher));
+  EXPECT_NEAR(Signed(smooth), -(0.8 - 4 * 4.0 * 0.01), 1e-3);  // friction at the force cap
+  EXPECT_LT(Signed(rougher), 0);
+  EXPECT_GT(Signed(rough), 0);
+  EXPECT_EQ(Signed(rough), LoadMargin({rough.data(), rough.size()}, weight, 0.025, 4.0));
+}
+
 }  // namespace
 }  // namespace regrasp

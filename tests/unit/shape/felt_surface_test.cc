@@ -95,9 +95,13 @@ TEST(FeltSurface, FollowsSmoothBodiesAndFlats) {
 }
 
 TEST(FeltSurface, BendsAtAnEdgeAndNotOnAFlat) {
-  const FeltSurface felt = Felt(Box(Vector3d::Constant(0.02)), 400, 2);
+  // An edge at 35 degrees, in the middle of its cells.
+  const Surface box = Box({0.02, 0.014, 0.02});
+  const FeltSurface felt = Felt(box, 4000, 2);
+  const Vector3d edge(0.02, 0.014, 0.002);
   EXPECT_LT(felt.At({1, 0.05, 0.05}).bend, 0.1);
-  EXPECT_GT(felt.At({1, 1, 0.05}).bend, 0.25);  // felt here and there only
+  EXPECT_GT(felt.At(edge).bend, 0.5);  // half of the normals 90 degrees from the others: 0.77
+  EXPECT_NEAR(felt.BendAt(edge), felt.At(edge).bend, 1e-9);
 }
 
 // The pose is noisy and contacts wander: what was felt long ago gives way to what is felt now.

@@ -1,0 +1,145 @@
+#include "core/gait/finger_reach.h"
+
+#include <algorithm>
+
+namespace regrasp {
+namespace {
+
+constexpr double kDamping2 = 1e-6;     // of the pseudo-inverse [m²]
+constexpr double kClose = 2e-4;        // the tip is there [m]
+constexpr double kLongestStep = 0.35;  // per joint and step [rad]
+constexpr double kTurnStep = 0.06;     // of the object [rad]
+constexpr double kMiddlePull = 0.15;   // of the way to the middle of the range, in the null space
+constexpr double kTolerance = 0.002;   // a finger this far behind no longer follows [m]
+
+Bone BoneOf(const Link& link, const Isometry3d& X_WL) {
+  for (const Shape& shape : link.shapes)
+    if (shape.kind == Shape::Kind::kCapsule)
+      return {X_WL * shape.a_L, X_WL * shape.b_L, shape.radius};
+  return {};
+}
+
+/// J⁺ x.
+FingerVector Solve(const FingerJacobian& J, const Vector3d& x) {
+  const Matrix3d JJt = J * J.transpose() + kDamping2 * Matrix3d::Identity();
+  const Vector3d y = JJt.inverse() * x;
+  return J.transpose() * y;
+}
+
+/// One step of the tip by `dp`; joints drift to the middle of their range where the tip does not
+/// care. Clamped `margin` inside the limits.
+FingerVector Stepped(const HandModel& hand, int finger, const FingerPosture& posture,
+                     const Vector3d& dp, double margin, double pull) {
+  const auto& joints = hand.fingers[finger].joints;
+  FingerVector dq = Solve(posture.J, dp);
+  if (pull > 0) {
+    FingerVector middle(posture.q.size());
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const Joint& joint = hand.joints[joints[k]];
+      const auto i = static_cast<Eigen::Index>(k);
+      middle[i] = pull * (0.5 * (joint.lower + joint.upper) - posture.q[i]);
+    }
+    const Vector3d moved = posture.J * middle;
+    dq += middle - Solve(posture.J, moved);
+  }
+  FingerVector q = posture.q;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Joint& joint = hand.joints[joints[k]];
+    const auto i = static_cast<Eigen::Index>(k);
+    const double low = std::min(joint.lower + margin, posture.q[i]);
+    const double high = std::max(joint.upper - margin, posture.q[i]);
+    q[i] = std::clamp(q[i] + std::clamp(dq[i], -kLongestStep, kLongestStep), low, high);
+  }
+  return q;
+}
+
+}  // namespace
+
+FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q) {
+  const Finger& model = hand.fingers[finger];
+  FingerPosture posture;
+  posture.q = q;
+  Isometry3d X_WL = Isometry3d::Identity();
+  std::array<Vector3d, kMaxFingerJoints> axis_W, p_WJ;
+  Link const* before = nullptr;
+  Isometry3d X_WBefore = X_WL;
+  for (std::size_t k = 0; k < model.joints.size(); ++k) {
+    const Joint& joint = hand.joints[model.joints[k]];
+    if (k > 0) {
+      before = &hand.links[joint.parent_link];
+      X_WBefore = X_WL;
+    }
+    X_WL = X_WL * joint.X_PJ;
+    axis_W[k] = X_WL.linear() * joint.axis_J;
+    p_WJ[k] = X_WL.translation();
+    X_WL.linear() =
+        X_WL.linear() *
+        Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], joint.axis_J).toRotationMatrix();
+  }
+  posture.p_WF = X_WL * model.p_LF;
+  posture.along_W = (posture.p_WF - X_WL.translation()).normalized();
+  posture.tip = BoneOf(hand.links[model.tip_link], X_WL);
+  if (before != nullptr) posture.middle = BoneOf(*before, X_WBefore);
+  posture.J.resize(3, static_cast<Eigen::Index>(model.joints.size()));
+  for (std::size_t k = 0; k < model.joints.size(); ++k)
+    posture.J.col(static_cast<Eigen::Index>(k)) = axis_W[k].cross(posture.p_WF - p_WJ[k]);
+  return posture;
+}
+
+FingerVector AnglesOf(const HandModel& hand, int finger, const JointVector& q) {
+  const auto& joints = hand.fingers[finger].joints;
+  FingerVector angles(static_cast<Eigen::Index>(joints.size()));
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    angles[static_cast<Eigen::Index>(k)] = q[joints[k]];
+  return angles;
+}
+
+FingerPosture ReachFor(const HandModel& hand, int finger, const FingerPosture& from,
+                       const Vector3d& p_WF, double margin, int steps) {
+  FingerPosture posture = from;
+  for (int i = 0; i < steps; ++i) {
+    const Vector3d error = p_WF - posture.p_WF;
+    if (error.squaredNorm() < kClose * kClose) break;
+    posture =
+        PostureAt(hand, finger, Stepped(hand, finger, posture, error, margin, kMiddlePull * 0.5));
+  }
+  return posture;
+}
+
+double MotionReserve(const HandModel& hand, int finger, const FingerPosture& from,
+                     const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most) {
+  const auto& joints = hand.fingers[finger].joints;
+  FingerPosture posture = from;
+  Vector3d r = from.p_WF - p_WO;
+  const Matrix3d turn = Eigen::AngleAxisd(kTurnStep, axis_W).toRotationMatrix();
+  for (double angle = 0; angle < most; angle += kTurnStep) {
+    r = turn * r;
+    posture = PostureAt(hand, finger,
+                        Stepped(hand, finger, posture, p_WO + r - posture.p_WF, 0.0, kMiddlePull));
+    if ((p_WO + r - posture.p_WF).norm() > kTolerance) return angle;
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      const Joint& joint = hand.joints[joints[k]];
+      const auto i = static_cast<Eigen::Index>(k);
+      const double moved = posture.q[i] - from.q[i];
+      if ((posture.q[i] > joint.upper - margin && moved > 0) ||
+          (posture.q[i] < joint.lower + margin && moved < 0))
+        return angle;
+    }
+  }
+  return most;
+}
+
+double Gap(const Bone& one, const Bone& two) {
+  if (one.radius <= 0 || two.radius <= 0) return 1.0;
+  // Closest points of two segments by alternating projection, exact for most pairs after a few
+  // rounds [Ericson 2005, Sec. 5.1.9 without the special cases].
+  const Vector3d d1 = one.b_W - one.a_W, d2 = two.b_W - two.a_W, r = one.a_W - two.a_W;
+  const double a = std::max(1e-12, d1.squaredNorm()), e = std::max(1e-12, d2.squaredNorm());
+  const double b = d1.dot(d2), c = d1.dot(r), f = d2.dot(r), denominator = a * e - b * b;
+  double s = denominator > 1e-18 ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+  const double t = std::clamp((b * s + f) / e, 0.0, 1.0);
+  s = std::clamp((b * t - c) / a, 0.0, 1.0);
+  return (one.a_W + s * d1 - two.a_W - t * d2).norm() - one.radius - two.radius;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,198 @@
+#include "core/gait/landing_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/exploration/exploration_parameters.h"
+#include "core/gait/gait_parameters.h"
+#include "core/gait/sure_grasp.h"
+#include "core/quality/load_margin.h"
+
+namespace regrasp {
+namespace {
+
+constexpr int kRatedPerTick = 2;
+constexpr int kReachSteps = 8;
+constexpr double kLimitMargin = 0.05;    // of a joint at the landing [rad]
+constexpr double kMissing = 0.0015;      // a tip this far from its target does not reach it [m]
+constexpr double kFar2 = 0.010 * 0.010;  // distance from home that costs kFarCost [m²]
+constexpr double kFarCost = 0.3;
+constexpr double kClearance = 0.001;  // to links of other fingers [m]
+constexpr double kKnown = 0.35;       // farther from all that was felt the surface is unknown [rad]
+constexpr double kUnknownCost = 1.0;  // per rad from what was felt
+constexpr double kPenalty = 2.0;
+constexpr double kUnknownShare = 0.3;  // of the angle to the nearest felt direction
+
+/// Candidate `index` as an offset from home in its tangent plane, in units of the reach.
+Eigen::Vector2d RingOffset(int index) {
+  constexpr std::array<int, 4> kCounts{8, 12, 16, 24};
+  if (index == 0) return Eigen::Vector2d::Zero();
+  --index;
+  for (std::size_t ring = 0; ring < kCounts.size(); ++ring) {
+    if (index < kCounts[ring]) {
+      const double radius = 0.25 * static_cast<double>(ring + 1);
+      const double angle = 2 * std::numbers::pi * index / kCounts[ring];
+      return radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    }
+    index -= kCounts[ring];
+  }
+  return Eigen::Vector2d::Zero();
+}
+
+double Share(double value, double wanted) {
+  return wanted > 0 ? std::clamp(value / wanted, -1.0, 1.0) : 1.0;
+}
+
+}  // namespace
+
+void LandingPlan::Start(const Request& request) {
+  *this = LandingPlan();
+  request_ = request;
+}
+
+LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) const {
+  const HandModel& hand = tick.hand;
+  const Estimate& estimate = tick.estimate;
+  const int finger = request_.finger;
+  const Matrix3d R_home = RotationFromZ(request_.home.normal_W);
+  const Eigen::Vector2d offset = request_.reach * RingOffset(index);
+  const Vector3d aim_W = request_.home.p_OC + R_home.leftCols<2>() * offset;
+  const Quaterniond q_OW = estimate.q_WO.conjugate();
+  const SurfacePoint surface = tick.felt.At(q_OW * aim_W);
+
+  Candidate candidate;
+  Landing& landing = candidate.landing;
+  landing.found = true;
+  landing.p_OC = surface.p_O;
+  landing.normal_O = surface.normal_O;
+  landing.p_OF = surface.p_O + hand.fingers[finger].tip_radius * surface.normal_O;
+  landing.unknown = surface.unknown;
+  const double tilt =
+      tick.gait.doubt * surface.bend + kUnknownShare * std::min(0.5, surface.unknown);
+  candidate.friction = FrictionUnderTilt(tick.control.friction_estimate, tilt);
+
+  const Vector3d p_WF = estimate.p_WO + estimate.q_WO * landing.p_OF;
+  const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
+  const FingerPosture there = ReachFor(hand, finger, now, p_WF, kLimitMargin, kReachSteps);
+  const double missing = (there.p_WF - p_WF).norm();
+  landing.score = CheapScore(tick, there, landing.normal_O, surface.unknown, &landing.reserve) -
+                  kFarCost * offset.squaredNorm() / kFar2;
+  if (missing > kMissing) landing.score -= kPenalty * (1 + missing / 0.01);
+  return candidate;
+}
+
+double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& there,
+                               const Vector3d& normal_O, double unknown, double* reserve) const {
+  const HandModel& hand = tick.hand;
+  const Estimate& estimate = tick.estimate;
+  const int finger = request_.finger;
+  double score = -kUnknownCost * unknown - kPenalty * std::max(0.0, unknown - kKnown);
+  const double facing = there.along_W.dot(estimate.q_WO * normal_O);
+  if (facing > tick.exploration.least_facing)
+    score -= kPenalty * (facing - tick.exploration.least_facing);
+  double gap = kClearance;
+  for (int i : tick.grasp.without(finger)) {
+    const FingerPosture other = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
+    for (const Bone* own : {&there.tip, &there.middle})
+      for (const Bone* its : {&other.tip, &other.middle}) gap = std::min(gap, Gap(*own, *its));
+  }
+  if (gap < kClearance) score -= kPenalty * std::min(1.0, (kClearance - gap) / 0.002);
+  if (!request_.axis_W.isZero()) {
+    *reserve = MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W,
+                             tick.gait.limit_margin, tick.gait.reserve_wanted);
+    score += Share(*reserve, tick.gait.reserve_wanted);
+  }
+  return score;
+}
+
+LandingPlan::Candidate LandingPlan::Stay(const ControlTick& tick) const {
+  const FingerEstimate& f = tick.finger(request_.finger);
+  const Quaterniond q_OW = tick.estimate.q_WO.conjugate();
+  Candidate candidate;
+  Landing& landing = candidate.landing;
+  landing.found = landing.stays = true;
+  landing.p_OC = q_OW * (f.p_WC - tick.estimate.p_WO);
+  landing.p_OF = q_OW * (f.p_WF - tick.estimate.p_WO);
+  landing.normal_O = q_OW * f.normal_W;
+  candidate.friction = FrictionUnderTilt(tick.control.friction_estimate,
+                                         tick.gait.doubt * tick.felt.BendAt(landing.p_OC));
+  const FingerPosture now =
+      PostureAt(tick.hand, request_.finger, AnglesOf(tick.hand, request_.finger, tick.estimate.q));
+  landing.score = CheapScore(tick, now, landing.normal_O, 0, &landing.reserve);
+  const double far2 =
+      TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC, request_.home.normal_W)
+          .squaredNorm();
+  landing.score -= kFarCost * far2 / kFar2;
+  return candidate;
+}
+
+void LandingPlan::Remember(const Candidate& candidate) {
+  std::size_t place = shortlist_.size();
+  if (!shortlist_.push_back(candidate)) {
+    place = shortlist_.size() - 1;
+    if (candidate.landing.score <= shortlist_[place].landing.score) return;
+    shortlist_[place] = candidate;
+  }
+  for (; place > 0 && shortlist_[place].landing.score > shortlist_[place - 1].landing.score;
+       --place)
+    std::swap(shortlist_[place], shortlist_[place - 1]);
+}
+
+bool LandingPlan::Examine(const ControlTick& tick) {
+  const Candidate& candidate = shortlist_[examined_];
+  const Estimate& estimate = tick.estimate;
+  while (without_ < tick.hand.num_fingers() &&
+         (without_ == request_.finger || !tick.grasp.contains(without_) ||
+          (request_.room_for >= 0 && without_ != request_.room_for)))
+    ++without_;
+  if (without_ >= tick.hand.num_fingers()) return true;
+  const FingerSet rest = tick.grasp.without(without_).without(request_.finger);
+  Grasp grasp =
+      SureGraspOf(estimate, rest, tick.control.friction_estimate, tick.felt, tick.gait.doubt);
+  grasp.push_back({estimate.q_WO * candidate.landing.p_OC,
+                   -(estimate.q_WO * candidate.landing.normal_O), candidate.friction});
+  const double margin =
+      SignedLoadMargin({grasp.data(), grasp.size()}, tick.control.mass_estimate * tick.gravity_W,
+                       estimate.object_scale, tick.control.max_normal_force);
+  if (without_ == request_.room_for) shortlist_[examined_].landing.margin = margin;
+  const double share = Share(margin, tick.gait.margin_wanted);
+  sum_ += share;
+  least_ = count_ == 0 ? share : std::min(least_, share);
+  if (without_ == request_.next) after_ = share;
+  ++count_;
+  ++without_;
+  return false;
+}
+
+bool LandingPlan::Step(const ControlTick& tick) {
+  if (next_ < kCandidates) {
+    for (int k = 0; k < kRatedPerTick && next_ < kCandidates; ++k) Remember(Rate(tick, next_++));
+    if (next_ == kCandidates && tick.finger(request_.finger).ticks_without_contact == 0) {
+      // Staying is examined in any case.
+      if (shortlist_.full()) shortlist_.resize(kShortlist - 1);
+      shortlist_.push_back(Stay(tick));
+    }
+    return false;
+  }
+  if (examined_ < static_cast<int>(shortlist_.size())) {
+    if (!Examine(tick)) return false;
+    Landing landing = shortlist_[examined_].landing;
+    if (request_.room_for >= 0) {
+      landing.score += 3 * landing.margin / std::max(1e-3, tick.gait.margin_wanted);
+    } else if (count_ > 0) {
+      landing.score += 0.5 * (sum_ / count_ + least_) + after_;
+    }
+    if (!best_.found || landing.score > best_.score) best_ = landing;
+    if (landing.stays) stay_score_ = landing.score;
+    ++examined_;
+    without_ = count_ = 0;
+    sum_ = least_ = after_ = 0;
+    return false;
+  }
+  best_.gain = best_.score - stay_score_;
+  return true;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,125 @@
+#pragma once
+
+/// Where a finger that leaves shall land: planned on the felt surface, a little per tick.
+///
+/// Candidates lie in rings about the finger's home, projected onto the felt surface. Each is scored
+/// by shares of what is wanted, at most 1 each:
+///
+///   J = reserve / reserve wanted − 0.3 (distance from home / 10 mm)²
+///       + ½ (mean + least over the other fingers k of ρ without k / ρ wanted) + ρ without the next
+///       / ρ wanted − penalties
+///
+/// reserve: MotionReserve of the coming turn; ρ: load margin of the grasp with the finger there,
+/// in which a contact near an edge or on unknown ground has less friction (its normal may be
+/// another). Penalties where the finger does not reach, faces the surface with its side, comes near
+/// another finger, or where the surface is not known. The cheap terms rate all candidates, load
+/// margins only the best few.
+
+#include "core/control/control_tick.h"
+#include "core/gait/finger_reach.h"
+#include "core/gait/stance.h"
+#include "core/shape/felt_surface.h"
+
+namespace regrasp {
+
+/// A place on the object for one finger, in O.
+struct Landing {
+  bool found = false;
+  bool stays = false;                     ///< the best is where the finger stands
+  Vector3d p_OC = Vector3d::Zero();       ///< contact [m]
+  Vector3d p_OF = Vector3d::Zero();       ///< fingertip centre [m]
+  Vector3d normal_O = Vector3d::UnitZ();  ///< outward
+  double unknown = 0;                     ///< angle to the nearest felt direction [rad]
+  double reserve = 0;                     ///< [rad]
+  double gain = 0;    ///< in J over staying; the whole of J where the finger stands nowhere
+  double score = 0;   ///< J
+  double margin = 0;  ///< ρ without the finger for which room is made, where there is one [N]
+  template <typename V>
+  void Fields(V& v) {
+    v("found", found);
+    v("stays", stays);
+    v("p_OC", p_OC);
+    v("p_OF", p_OF);
+    v("normal_O", normal_O);
+    v("unknown", unknown);
+    v("reserve", reserve);
+    v("gain", gain);
+    v("score", score);
+    v("margin", margin);
+  }
+};
+
+class LandingPlan {
+ public:
+  struct Request {
+    int finger = -1;
+    StanceContact home;                   ///< from the object's centre, in W axes
+    Vector3d axis_W = Vector3d::UnitZ();  ///< of the coming turn, sense included; zero: none
+    int next = -1;                        ///< the finger that leaves after it, or -1
+    int room_for = -1;     ///< >= 0: only the load margin without this finger counts, and the way
+    double reach = 0.010;  ///< candidates lie so far about home [m]
+    template <typename V>
+    void Fields(V& v) {
+      v("finger", finger, v.Finger());
+      v("home", home);
+      v("axis_W", axis_W);
+      v("next", next, v.Finger());
+      v("room_for", room_for, v.Finger());
+      v("reach", reach);
+    }
+  };
+  void Start(const Request& request);
+  /// A slice of some 50 us. True once the plan is made.
+  bool Step(const ControlTick& tick);
+  const Request& request() const { return request_; }
+  const Landing& landing() const { return best_; }
+  template <typename V>
+  void Fields(V& v) {
+    v("request", request_);
+    v("next", next_, FieldRange{0, kCandidates});
+    v("shortlist", shortlist_);
+    v("examined", examined_, FieldRange{0, kShortlist});
+    v("without", without_, FieldRange{0, kMaxFingers});
+    v("sum", sum_);
+    v("least", least_);
+    v("after", after_);
+    v("count", count_);
+    v("stay_score", stay_score_);
+    v("best", best_);
+  }
+
+ private:
+  static constexpr int kRings = 4;
+  static constexpr int kCandidates = 1 + 8 + 12 + 16 + 24;
+  static constexpr int kShortlist = 7;
+
+  struct Candidate {
+    Landing landing;
+    double friction = 0;  // coefficient that its uncertain normal leaves
+    template <typename V>
+    void Fields(V& v) {
+      v("landing", landing);
+      v("friction", friction);
+    }
+  };
+  Candidate Rate(const ControlTick& tick, int index) const;
+  /// Where the finger stands.
+  Candidate Stay(const ControlTick& tick) const;
+  double CheapScore(const ControlTick& tick, const FingerPosture& there, const Vector3d& normal_O,
+                    double unknown, double* reserve) const;
+  void Remember(const Candidate& candidate);
+  /// One load margin more of the candidate under examination; true when it is fully rated.
+  bool Examine(const ControlTick& tick);
+
+  Request request_;
+  int next_ = 0;                                  // candidate that is rated next
+  FixedVector<Candidate, kShortlist> shortlist_;  // best first
+  int examined_ = 0;                              // of the shortlist
+  int without_ = 0;                               // the finger whose absence is examined next
+  double sum_ = 0, least_ = 0, after_ = 0;        // shares of the load margin so far
+  int count_ = 0;
+  double stay_score_ = -10;  // far below any, where the finger stands nowhere
+  Landing best_;
+};
+
+}  // namespace regrasp

@@ -1,0 +1,141 @@
+#include "core/gait/landing_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/exploration/exploration_parameters.h"
+#include "core/gait/gait_parameters.h"
+#include "core/gait/sure_grasp.h"
+#include "tests/unit/control/held_sphere.h"
+
+namespace regrasp {
+namespace {
+
+constexpr double kRadius = 0.025;
+
+struct LandingPlanTest : testing::Test {
+  LoadedScenario model = ShadowHand();
+  const HandModel& hand = model.hand;
+  Estimate estimate = TouchingEstimate(hand, GraspPosture(hand));
+  FeltSurface felt;
+  LoadMargins margins;
+  Vector3d gravity_W = model.scenario.gravity_W;
+  ControlParameters control;
+  ExplorationParameters exploration;
+  GaitParameters gait;
+
+  LandingPlanTest() {
+    for (int i = 0; i < FeltSurface::kCells; ++i) {
+      const Vector3d d = FeltSurface::CellDirection(i);
+      for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(kRadius * d, d);
+    }
+  }
+  ControlTick Tick() {
+    return {hand,    estimate,    FingerSet::First(hand.num_fingers()),
+            margins, felt,        gravity_W,
+            control, exploration, gait,
+            1e-3};
+  }
+  LandingPlan::Request Home(int finger) {
+    LandingPlan::Request request;
+    request.finger = finger;
+    const FingerEstimate& f = estimate.fingers[finger];
+    request.home = {f.p_WC - estimate.p_WO, f.p_WF - estimate.p_WO, f.normal_W};
+    request.axis_W = -Vector3d::UnitZ();
+    return request;
+  }
+  int Plan(LandingPlan* plan) {
+    int ticks = 1;
+    while (!plan->Step(Tick())) ++ticks;
+    return ticks;
+  }
+};
+
+TEST_F(LandingPlanTest, ReachesWhatTheFingerReachesAndNoMore) {
+  for (int finger = 0; finger < hand.num_fingers(); ++finger) {
+    SCOPED_TRACE(hand.fingers[finger].name);
+    const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
+    EXPECT_LT((now.p_WF - estimate.fingers[finger].p_WF).norm(), 1e-12);  // the hand's kinematics
+    const FingerPosture there =
+        ReachFor(hand, finger, now, now.p_WF + Vector3d(0.002, 0.001, -0.003), 0.0, 12);
+    EXPECT_LT((there.p_WF - now.p_WF - Vector3d(0.002, 0.001, -0.003)).norm(), 2e-4);
+    const FingerPosture far = ReachFor(hand, finger, now, Vector3d(0, 0, 0.5), 0.05, 12);
+    EXPECT_GT((far.p_WF - Vector3d(0, 0, 0.5)).norm(), 0.1);
+    for (std::size_t k = 0; k < hand.fingers[finger].joints.size(); ++k) {
+      const Joint& joint = hand.joints[hand.fingers[finger].joints[k]];
+      EXPECT_GE(far.q[static_cast<Eigen::Index>(k)], joint.lower);
+      EXPECT_LE(far.q[static_cast<Eigen::Index>(k)], joint.upper);
+    }
+  }
+}
+
+// The reserve of a posture that has already turned by an angle is what is left of it.
+TEST_F(LandingPlanTest, ReserveShrinksByWhatTheObjectHasTurned) {
+  int finger = -1;
+  double all = 0;
+  for (int i = 0; i < hand.num_fingers(); ++i) {
+    const FingerPosture posture = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
+    const double reserve =
+        MotionReserve(hand, i, posture, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0);
+    if (reserve > all) finger = i;
+    all = std::max(all, reserve);
+  }
+  ASSERT_GT(all, 0.3);
+  ASSERT_LT(all, 3.0);
+  const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
+  const Vector3d r = FromRotationVector({0, 0, -0.2}) * (now.p_WF - estimate.p_WO);
+  const FingerPosture turned = ReachFor(hand, finger, now, estimate.p_WO + r, 0.0, 20);
+  const double rest =
+      MotionReserve(hand, finger, turned, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0);
+  EXPECT_NEAR(all - rest, 0.2, 0.13);  // steps of 0.06 rad, and another way through the null space
+}
+
+TEST_F(LandingPlanTest, LandsOnTheFeltSurfaceWithinReachOfHome) {
+  LandingPlan plan;
+  for (int finger = 0; finger < hand.num_fingers(); ++finger) {
+    SCOPED_TRACE(hand.fingers[finger].name);
+    plan.Start(Home(finger));
+    const int ticks = Plan(&plan);
+    EXPECT_LT(ticks, 120);
+    const Landing& landing = plan.landing();
+    ASSERT_TRUE(landing.found);
+    EXPECT_NEAR(landing.p_OC.norm(), kRadius, 1e-4);
+    EXPECT_LT((landing.p_OC - estimate.q_WO.conjugate() * plan.request().home.p_OC).norm(), 0.0105);
+    EXPECT_GT(landing.normal_O.dot(landing.p_OC.normalized()), std::cos(0.02));
+    EXPECT_GT(landing.reserve, 0.1);
+  }
+}
+
+TEST_F(LandingPlanTest, KeepsOffGroundThatNobodyHasFelt) {
+  const int ring = hand.FindFinger("ring");
+  LandingPlan plan;
+  plan.Start(Home(ring));
+  Plan(&plan);
+  const Vector3d free = plan.landing().p_OC;
+  // Nothing felt beyond home on the side to which the free plan went.
+  const Vector3d home = Home(ring).home.p_OC;
+  const Vector3d side =
+      (free - home - (free - home).dot(home) / home.squaredNorm() * home).normalized();
+  felt.Reset();
+  for (int i = 0; i < FeltSurface::kCells; ++i) {
+    const Vector3d d = FeltSurface::CellDirection(i);
+    if (d.dot(side) > 0.05) continue;
+    for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(kRadius * d, d);
+  }
+  plan.Start(Home(ring));
+  Plan(&plan);
+  EXPECT_LT(plan.landing().p_OC.dot(side), free.dot(side) + 1e-9);
+  EXPECT_LT(plan.landing().unknown, 0.36);
+}
+
+// Of a friction cone about a normal that may be off by an angle, that much of its half angle is
+// sure.
+TEST(FrictionUnderTilt, IsThatOfTheInscribedCone) {
+  EXPECT_NEAR(FrictionUnderTilt(0.5, 0), 0.5, 1e-12);
+  EXPECT_NEAR(std::atan(FrictionUnderTilt(0.5, 0.1)), std::atan(0.5) - 0.1, 1e-12);
+  EXPECT_GT(FrictionUnderTilt(0.5, 2.0), 0);
+}
+
+}  // namespace
+}  // namespace regrasp
