@@ -36,6 +36,11 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   service.control.paused = config.paused;
   service.control.clock =
       config.clock == "lockstep" ? ClockMode::kLockstep : ClockMode::kContinuous;
+  service.budgets = {static_cast<std::uint64_t>(config.max_recording_mb) << 20,
+                     static_cast<std::size_t>(config.max_incidents),
+                     static_cast<std::size_t>(config.max_pictures),
+                     static_cast<std::size_t>(config.max_checkpoints),
+                     static_cast<std::size_t>(config.max_commands)};
 
   SessionConfig& session = service.control.session;
   service.load.inertia_from_shape = config.inertia_from_shape;

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 #include <spdlog/pattern_formatter.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,11 +14,13 @@
 #include <cstring>
 
 #include "core/common/nearest_name.h"
+#include "core/files/names.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
 #include "core/protocol/standard_files.h"
 #include "daemon/config/config.h"
 #include "daemon/daemon.h"
+#include "daemon/log_sink.h"
 #include "daemon/loop/bench.h"
 #include "daemon/pages/manual.h"
 #include "daemon/pages/protocol_page.h"
@@ -43,7 +46,7 @@ class JsonMessage : public spdlog::custom_flag_formatter {
 };
 
 void StartLog(const DaemonConfig& config) {
-  auto logger = spdlog::stderr_color_mt("regraspd");
+  auto logger = std::make_shared<spdlog::logger>("regraspd", std::make_shared<PatientSink>());
   logger->set_level(spdlog::level::from_str(config.log_level));
   if (config.log_format == "json") {
     auto formatter = std::make_unique<spdlog::pattern_formatter>();
@@ -147,9 +150,25 @@ std::string Unexpected(const CLI::App& app) {
                      near.empty() ? "" : fmt::format("; did you mean {}?", near));
 }
 
+/// As many descriptors as the clients and the daemon's own may need, where that is allowed.
+void RaiseDescriptorLimit(int clients) {
+  constexpr rlim_t kOwn = 32;
+  const rlim_t wanted = static_cast<rlim_t>(clients) + kOwn;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_cur < wanted)
+    spdlog::warn("{} descriptors are allowed: fewer clients than {} can connect", limit.rlim_cur,
+                 clients);
+}
+
 int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
   StartLog(config);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);            // a file that may not grow is an error, not the end
+  ::umask(::umask(0) | S_IWGRP | S_IWOTH);  // nobody else changes what is written
+  RaiseDescriptorLimit(config.max_clients);
   Daemon daemon(config);
   spdlog::info("regraspd {} listens on {}, configuration {}", Version(), daemon.socket_path(),
                config.file.empty() ? "built in" : config.file);
@@ -159,6 +178,10 @@ int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
 }
 
 int Main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (!IsUtf8(argv[i]))
+      return Fail(fmt::format("argument {} is not UTF-8: {}", i, Shown(argv[i])), "regraspd --help",
+                  ExitCode::kUsage);
   CLI::App app(kDescription, "regraspd");
   Flags flags;
   AddFlags(app, flags);

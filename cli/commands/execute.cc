@@ -1,8 +1,10 @@
 #include "cli/commands/execute.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "cli/client/context.h"
+#include "core/files/names.h"
 
 namespace regrasp::cli {
 namespace {
@@ -33,6 +35,10 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
     return error.code;
   };
   try {
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (!IsUtf8(words[i]))
+        throw CliError(kUsage, fmt::format("argument {} is not UTF-8: {}", i + 1, Shown(words[i])),
+                       "regrasp help");
     const Invocation invocation = Parse(argc, argv.data(), &options);
     Context context(options);
     ExitCode code = kOk;

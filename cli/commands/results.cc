@@ -9,21 +9,29 @@
 #include "cli/client/context.h"
 #include "cli/commands/run_files.h"
 #include "cli/print/terminal_graphics.h"
+#include "core/files/draft.h"
+#include "core/files/read_file.h"
 
 namespace regrasp::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Copies a picture; one that is there already, under whatever name, is left as it is. Throws
-/// CliError(kIo) with `next` to try.
-void CopyTo(const fs::path& target, const std::string& file, const std::string& next) {
-  std::error_code error, ignored;
-  if (fs::equivalent(file, target, ignored)) return;
-  fs::copy_file(file, target, fs::copy_options::overwrite_existing, error);
-  if (error)
+/// The user named the target: what is there is replaced, at once and whole.
+void Copy(const fs::path& picture, const fs::path& target, const std::string& next) {
+  constexpr std::uint64_t kMaxPicture = 256u << 20;  // [bytes]
+  std::error_code ignored;
+  if (fs::equivalent(picture, target, ignored)) return;
+  try {
+    const fs::path directory = fs::absolute(target).parent_path();
+    if (!fs::is_directory(directory))
+      throw std::runtime_error(directory.string() + " is not a directory");
+    WriteWhole(target, ReadRegularFile(picture, kMaxPicture), Draft::Existing::kReplace);
+  } catch (const std::exception& e) {
     throw CliError(
-        kIo, fmt::format("cannot copy {} to {}: {}", file, target.string(), error.message()), next);
+        kIo, fmt::format("cannot copy {} to {}: {}", picture.string(), target.string(), e.what()),
+        next);
+  }
 }
 
 std::string Bytes(const std::string& file) {
@@ -43,8 +51,10 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
                    "-o - writes the picture itself: it goes with none of --show, --json, --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " -o - > FILE.png");
   Invocation request = invocation;
-  if (const std::string suffix = fs::path(invocation.Text("output")).extension(); !suffix.empty())
+  if (const std::string suffix = fs::path(invocation.Text("output")).extension(); !suffix.empty()) {
     request.params["file"] = Plain(invocation.params["name"]) + suffix;
+    request.params["overwrite"] = true;  // only on the way to where the user named it
+  }
   Json answer = context.Call(request);
   std::string file = Plain(At(answer, "path"));
   if (to_stdout) {
@@ -54,7 +64,7 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
   if (invocation.Has("output")) {
     fs::path target = invocation.Text("output");
     if (fs::is_directory(target)) target /= Plain(At(answer, "file"));
-    CopyTo(target, file, "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
+    Copy(file, target, "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
     file = target;
     answer["path"] = fs::absolute(target).string();
     answer["file"] = target.filename().string();

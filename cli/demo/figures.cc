@@ -67,7 +67,7 @@ void Figures::MustHold(const std::string& step) {
 }
 
 void Figures::Picture(const std::string& name, const std::string& file, double last_s) {
-  Json params = {{"name", name}, {"file", file}};
+  Json params = {{"name", name}, {"file", file}, {"overwrite", true}};
   if (last_s > 0) params["last_s"] = last_s;
   const Json answer = daemon_.Call("plot", params);
   measured_["pictures"].push_back((output_ / Plain(At(answer, "file"))).string());

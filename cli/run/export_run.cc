@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -9,13 +10,25 @@
 #include <vector>
 
 #include "cli/run/npz.h"
-#include "core/mcap/mcap_reader.h"
+#include "core/files/draft.h"
+#include "core/files/names.h"
+#include "core/journal/checked_json.h"
+#include "core/journal/journal.h"
 
 namespace regrasp::run {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxColumns = 4096;  // of a table; our widest has some 200
+
+/// A topic or a field becomes the name of a file, or of an archive's member.
+void CheckFileName(const std::string& path, const char* what, std::string_view name) {
+  if (const std::string fault = FileNameFault(name); !fault.empty())
+    throw std::runtime_error(
+        fmt::format("{}: {} '{}' is no name: it {}", path, what, Shown(name), fault));
+}
 
 /// Units by the end of a field's name; longer ends first.
 constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
@@ -38,20 +51,37 @@ struct Run {
   McapSummary summary;
 };
 
+void AddMessage(const std::string& path, const McapMessage& message, Run* run) {
+  CheckFileName(path, "topic", message.topic);
+  Json json = ParseFileJson(message.data);
+  if (!json.is_object()) throw JournalError("a message that is no object");
+  for (const auto& [field, value] : json.items()) CheckFileName(path, "field", field);
+  if (message.topic == "run") {  // models: only the names of joints and fingers are needed here
+    const Json& hand = json.at("model").at("hand");
+    run->joints.clear();
+    run->fingers.clear();
+    for (const Json& joint : hand.at("joints")) run->joints.push_back(joint.at("name"));
+    for (const Json& finger : hand.at("fingers")) run->fingers.push_back(finger.at("name"));
+    json.erase("model");
+  }
+  run->topics[std::string(message.topic)].rows.push_back(std::move(json));
+}
+
 Run Read(const std::string& path) {
   Run run;
-  run.summary = ReadMcap(path, [&](const McapMessage& message) {
-    Json json = Json::parse(message.data);
-    if (message.topic == "run") {  // models: only the names of joints and fingers are needed here
-      const Json& hand = json.at("model").at("hand");
-      run.joints.clear();
-      run.fingers.clear();
-      for (const Json& joint : hand.at("joints")) run.joints.push_back(joint.at("name"));
-      for (const Json& finger : hand.at("fingers")) run.fingers.push_back(finger.at("name"));
-      json.erase("model");
-    }
-    run.topics[std::string(message.topic)].rows.push_back(std::move(json));
-  });
+  std::string topic;
+  try {
+    run.summary = ReadMcap(path, [&](const McapMessage& message) {
+      topic = message.topic;
+      AddMessage(path, message, &run);
+    });
+  } catch (const nlohmann::json::exception& e) {
+    throw std::runtime_error(fmt::format("{}: a message of topic '{}' is not as expected: {}", path,
+                                         Shown(topic), e.what()));
+  } catch (const JournalError& e) {
+    throw std::runtime_error(fmt::format("{}: topic '{}': {}", path, Shown(topic), e.what()));
+  }
+  if (!run.topics.contains("run")) throw std::runtime_error(path + " holds no run");
   return run;
 }
 
@@ -99,6 +129,8 @@ void WriteCsv(const Run& run, const Topic& topic, const fs::path& path) {
       Flatten(run, field, value, &cells);
       for (std::size_t i = before; i < cells.size(); ++i) {
         if (!place.emplace(cells[i].first, columns.size()).second) continue;
+        if (columns.size() == kMaxColumns)
+          throw std::runtime_error(fmt::format("a table of more than {} columns", kMaxColumns));
         columns.push_back(cells[i].first);
         const std::string& name = cells[i].first;  // of noise.position_m the last part tells
         units.push_back(UnitOf(value.is_object() ? name : field));
@@ -120,6 +152,16 @@ void WriteCsv(const Run& run, const Topic& topic, const fs::path& path) {
   }
   out.close();
   if (!out) throw std::runtime_error("cannot write " + path.string());
+}
+
+/// Whether every list has the length that the first of its kind has.
+bool Regular(const Json& value, const std::vector<std::size_t>& shape, std::size_t level = 0) {
+  if (level == shape.size()) return !value.is_array();
+  if (!value.is_array() || value.size() != shape[level]) return false;
+  if (value.empty()) return level + 1 == shape.size();
+  for (const Json& item : value)
+    if (!Regular(item, shape, level + 1)) return false;
+  return true;
 }
 
 std::vector<std::size_t> ShapeOf(const Json& value) {
@@ -154,7 +196,8 @@ void AddField(const Topic& topic, const std::string& name, const std::string& fi
   bool numbers = true, bools = true;
   for (const Json& row : topic.rows) {
     const auto found = row.find(field);
-    const bool same = found != row.end() && ShapeOf(*found) == inner;
+    const bool same =
+        found != row.end() && (inner.empty() ? !found->is_array() : Regular(*found, inner));
     numbers = numbers && same && AllOf(*found, &Json::is_number);
     bools = bools && same && AllOf(*found, &Json::is_boolean);
   }
@@ -203,37 +246,49 @@ void WriteNpz(const Run& run, const std::string& out) {
   npz.Finish();
 }
 
-ExportResult WriteMcap(const std::string& path, const std::string& out) {
+McapSummary WriteMcap(const std::string& path, const std::string& out) {
   McapWriter writer(out);
   // Channels stand before the first message: two passes.
   std::map<std::string, std::string> schemas;
   std::vector<std::string> order;
-  const McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
-    if (schemas.emplace(message.topic, message.schema).second) order.emplace_back(message.topic);
+  ReadMcap(path, [&](const McapMessage& message) {
+    if (!schemas.emplace(message.topic, message.schema).second) return;
+    CheckFileName(path, "topic", message.topic);
+    order.emplace_back(message.topic);
   });
+  if (!schemas.contains("run")) throw std::runtime_error(path + " holds no run");
+  if (order.size() >= UINT16_MAX) throw std::runtime_error(path + " holds too many topics");
   std::map<std::string, std::uint16_t> channels;
   for (const std::string& topic : order) channels[topic] = writer.AddChannel(topic, schemas[topic]);
-  ReadMcap(path, [&](const McapMessage& message) {
+  McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
     writer.Write(channels.at(std::string(message.topic)), message.time, message.data);
   });
   writer.Finish();
-  return {writer.messages(), 1, summary.complete};
+  return summary;
+}
+
+ExportResult Result(McapSummary summary, std::uint64_t files) {
+  return {summary.messages, files, summary.complete, std::move(summary.lost)};
 }
 
 }  // namespace
 
 ExportResult ExportRun(const std::string& path, const std::string& format, const std::string& out) {
-  if (fs::exists(out)) throw std::runtime_error(out + " exists; give another name with -o");
-  if (format == "mcap") return WriteMcap(path, out);
-  const Run run = Read(path);
-  if (format == "npz") {
-    WriteNpz(run, out);
-    return {run.summary.messages, 1, run.summary.complete};
+  Draft draft(out, Draft::Existing::kKeep,
+              format == "csv" ? Draft::Kind::kDirectory : Draft::Kind::kFile);
+  ExportResult result;
+  if (format == "mcap") {
+    result = Result(WriteMcap(path, draft.path()), 1);
+  } else {
+    Run run = Read(path);
+    if (format == "npz") WriteNpz(run, draft.path());
+    if (format == "csv")
+      for (const auto& [name, topic] : run.topics)
+        WriteCsv(run, topic, fs::path(draft.path()) / (name + ".csv"));
+    result = Result(std::move(run.summary), format == "csv" ? run.topics.size() : 1);
   }
-  fs::create_directories(out);
-  for (const auto& [name, topic] : run.topics)
-    WriteCsv(run, topic, fs::path(out) / (name + ".csv"));
-  return {run.summary.messages, run.topics.size(), run.summary.complete};
+  draft.Commit();
+  return result;
 }
 
 }  // namespace regrasp::run

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -14,6 +15,8 @@
 #include "cli/run/export_run.h"
 #include "cli/run/replay_run.h"
 #include "cli/run/video.h"
+#include "core/files/names.h"
+#include "core/journal/provenance.h"
 #include "core/protocol/errors.h"
 
 namespace regrasp::run {
@@ -34,8 +37,39 @@ void Print(const Command& command, const Json& result, const std::string& text) 
   if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
 }
 
+/// First of all: what the run was made with, where that is not what this program has.
+Json TellDifferences(const RunFile& file) {
+  const Segment& segment = file.segments.back();
+  Json differences = Json::array();
+  for (const std::string& difference :
+       Differences(segment.journal->config, segment.build, ModelSearchPath(""))) {
+    differences.push_back(difference);
+    fmt::print(stderr, "regrasp: note: {}\n", difference);
+  }
+  return differences;
+}
+
+Json LossesJson(const std::vector<McapLoss>& lost) {
+  Json list = Json::array();
+  for (const McapLoss& loss : lost)
+    list.push_back(
+        {{"offset", loss.offset},
+         {"bytes", loss.bytes},
+         {"start_s", loss.end != 0 ? Json(static_cast<double>(loss.start) * 1e-9) : Json()},
+         {"end_s", loss.end != 0 ? Json(static_cast<double>(loss.end) * 1e-9) : Json()},
+         {"cause", loss.cause}});
+  return list;
+}
+
+std::string LossesText(const std::vector<McapLoss>& lost) {
+  std::string text;
+  for (const McapLoss& loss : lost) text += "\n  lost: " + LossText(loss);
+  return text;
+}
+
 ExitCode ReplayCommand(const Command& command) {
   const RunFile file = ReadRunFile(command.file);
+  const Json differences = TellDifferences(file);
   OnState pace;
   if (const auto speed = command.options.find("--speed"); speed != command.options.end()) {
     using Clock = std::chrono::steady_clock;
@@ -62,6 +96,8 @@ ExitCode ReplayCommand(const Command& command) {
                {"complete", file.complete},
                {"build", segment.build},
                {"same_build", same_build},
+               {"differences", differences},
+               {"lost", LossesJson(file.lost)},
                {"first_difference", nullptr}};
   if (const auto& d = result.divergence)
     json["first_difference"] = {{"segment", result.segment},
@@ -74,10 +110,11 @@ ExitCode ReplayCommand(const Command& command) {
       fmt::format("{}: {}\n  {} commands, {:.3f} s ({} ticks), {} states compared", command.file,
                   verdict, result.commands, seconds, result.ticks, result.compared);
   if (!file.complete) text += "\n  the file has no end: its writer was killed";
+  text += LossesText(file.lost);
   if (!same_build)
     text += fmt::format("\n  recorded by {}\n  replayed by {}", segment.build, BuildIdentity());
   Print(command, json, text);
-  return result.divergence ? ExitCode::kFailed : ExitCode::kOk;
+  return result.divergence || !file.lost.empty() ? ExitCode::kFailed : ExitCode::kOk;
 }
 
 ExitCode ExportCommand(const Command& command) {
@@ -89,10 +126,12 @@ ExitCode ExportCommand(const Command& command) {
          {"format", format},
          {"messages", result.messages},
          {"files", result.files},
-         {"complete", result.complete}},
+         {"complete", result.complete},
+         {"lost", LossesJson(result.lost)}},
         fmt::format("{}: {} messages{}", out, result.messages,
-                    format == "csv" ? fmt::format(" in {} files", result.files) : ""));
-  return ExitCode::kOk;
+                    format == "csv" ? fmt::format(" in {} files", result.files) : "") +
+            LossesText(result.lost));
+  return result.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 double Number(const Command& command, const char* name, double otherwise) {
@@ -102,6 +141,7 @@ double Number(const Command& command, const char* name, double otherwise) {
 
 ExitCode VideoCommand(const Command& command) {
   const RunFile file = ReadRunFile(command.file);
+  const Json differences = TellDifferences(file);
   VideoOptions options;
   options.fps = Number(command, "--fps", options.fps);
   options.speed = Number(command, "--speed", options.speed);
@@ -109,9 +149,15 @@ ExitCode VideoCommand(const Command& command) {
   options.to_s = Number(command, "--to", options.to_s);
   const std::string& out = command.options.at("--output");
   const VideoResult result = WriteVideo(file, options, out);
-  Print(command, {{"path", out}, {"frames", result.frames}, {"duration_s", result.duration_s}},
-        fmt::format("{}: {} frames, {:.1f} s", out, result.frames, result.duration_s));
-  return ExitCode::kOk;
+  Print(command,
+        {{"path", out},
+         {"frames", result.frames},
+         {"duration_s", result.duration_s},
+         {"differences", differences},
+         {"lost", LossesJson(file.lost)}},
+        fmt::format("{}: {} frames, {:.1f} s", out, result.frames, result.duration_s) +
+            LossesText(file.lost));
+  return file.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 int Main(int argc, char** argv) {
@@ -144,4 +190,7 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace regrasp::run
 
-int main(int argc, char** argv) { return regrasp::run::Main(argc, argv); }
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error, not the end
+  return regrasp::run::Main(argc, argv);
+}

@@ -9,6 +9,9 @@
 namespace regrasp::run {
 namespace {
 
+/// Without the extensions of the format, sizes have 32 bits.
+constexpr double kMaxBytes = 0xf0000000u;
+
 template <typename T>
 void Put(std::string* out, T value) {
   for (std::size_t i = 0; i < sizeof(T); ++i)
@@ -53,12 +56,17 @@ void Npz::AddText(const std::string& name, const std::vector<std::string>& value
     texts.push_back(CodePoints(value));
     width = std::max(width, texts.back().size());
   }
+  if (texts.size() * 4.0 * static_cast<double>(width) > kMaxBytes) TooLarge();
   std::string data;
   for (auto& text : texts) {
     text.resize(width);
     for (const std::uint32_t point : text) Put(&data, point);
   }
   AddArray(name, "<U" + std::to_string(width), {values.size()}, data);
+}
+
+void Npz::TooLarge() const {
+  throw std::runtime_error(path_ + " would be larger than 4 GB: use csv or mcap");
 }
 
 void Npz::AddArray(const std::string& name, const std::string& type,
@@ -73,6 +81,7 @@ void Npz::AddArray(const std::string& name, const std::string& type,
   Put<std::uint16_t>(&member, dictionary.size());
   member += dictionary + data;
 
+  if (static_cast<double>(member.size()) > kMaxBytes) TooLarge();
   const std::string file = name + ".npy";
   const auto crc = ::crc32_z(0, reinterpret_cast<const Bytef*>(member.data()), member.size());
   std::string common;  // what the local header and the directory share
@@ -94,8 +103,10 @@ void Npz::AddArray(const std::string& name, const std::string& type,
   Put<std::uint32_t>(&directory_, 0);
   Put<std::uint32_t>(&directory_, offset_);
   directory_ += file;
-  if (offset_ + local.size() + member.size() > 0xf0000000u)
-    throw std::runtime_error(path_ + " would be larger than 4 GB: use csv or mcap");
+  if (static_cast<double>(offset_) + static_cast<double>(local.size() + member.size()) >
+          kMaxBytes ||
+      members_ == UINT16_MAX)
+    TooLarge();
   out_ << local << member;
   offset_ += static_cast<std::uint32_t>(local.size() + member.size());
   ++members_;

@@ -24,6 +24,7 @@ class Npz {
   void Finish();
 
  private:
+  [[noreturn]] void TooLarge() const;
   void AddArray(const std::string& name, const std::string& type,
                 const std::vector<std::size_t>& shape, const std::string& data);
 

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/journal/check.h"
+#include "core/journal/checked_json.h"
 #include "core/journal/journal_text.h"
-#include "core/mcap/mcap_reader.h"
 
 namespace regrasp::run {
 namespace {
@@ -39,12 +40,39 @@ void AddCommand(RunFile* file, std::string_view text) {
   entries.push_back(read.entry);
 }
 
+std::int64_t Integer(const nlohmann::ordered_json& json, const char* key, std::int64_t max) {
+  const auto& value = json.at(key);
+  if (!value.is_number_integer() || value < 0 || value > max)
+    throw JournalError(fmt::format("{} of a state: allowed are integers of 0 ... {}", key, max));
+  return value.get<std::int64_t>();
+}
+
 void AddState(RunFile* file, std::string_view text) {
-  const auto json = nlohmann::json::parse(text);
-  Of(file, json.at("segment").get<int>())
-      .states.push_back({json.at("tick").get<std::int64_t>(),
-                         json.at("commands").get<std::size_t>(),
+  const auto json = ParseFileJson(text);
+  Of(file, static_cast<int>(Integer(json, "segment", 1'000'000)))
+      .states.push_back({Integer(json, "tick", kMaxTick),
+                         static_cast<std::size_t>(Integer(json, "commands", 1'000'000'000)),
                          ParseHash(json.at("state_hash").get<std::string>())});
+}
+
+/// What is known to follow from the commands that are left, after a loss.
+void Cut(Segment* segment) {
+  std::erase_if(segment->states, [segment](const Segment::State& state) {
+    return state.commands > segment->journal->entries.size();
+  });
+}
+
+/// A segment's states in order; without a gap in its commands.
+void Finish(const RunFile& file, Segment* segment) {
+  std::ranges::stable_sort(segment->states, {}, [](const Segment::State& state) {
+    return std::pair(state.tick, state.commands);
+  });
+  if (!file.lost.empty()) return Cut(segment);
+  const std::size_t known = segment->journal->entries.size();
+  for (const Segment::State& state : segment->states)
+    if (state.commands > known)
+      throw JournalError(fmt::format("tick {}: a state after {} commands, where {} are known",
+                                     state.tick, state.commands, known));
 }
 
 }  // namespace
@@ -57,24 +85,29 @@ std::int64_t Segment::last_tick() const {
 
 RunFile ReadRunFile(const std::string& path) {
   RunFile file;
+  std::string fault;  // the first thing that does not follow: a gap, where something was lost
   try {
-    const McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
-      if (message.topic == "run") AddConfig(&file, message.data);
-      if (message.topic == "commands") AddCommand(&file, message.data);
-      if (message.topic == "state") AddState(&file, message.data);
+    McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
+      if (!fault.empty()) return;
+      try {
+        if (message.topic == "run") AddConfig(&file, message.data);
+        if (message.topic == "commands") AddCommand(&file, message.data);
+        if (message.topic == "state") AddState(&file, message.data);
+      } catch (const JournalError& e) {
+        fault = e.what();
+      } catch (const nlohmann::json::exception& e) {
+        fault = fmt::format("a damaged state: {}", e.what());
+      }
     });
     file.complete = summary.complete;
     file.messages = summary.messages;
+    file.lost = std::move(summary.lost);
+    if (!fault.empty() && (file.lost.empty() || file.segments.empty())) throw JournalError(fault);
     if (file.segments.empty()) throw JournalError("it holds no run");
+    for (Segment& segment : file.segments) Finish(file, &segment);
   } catch (const JournalError& e) {
     throw JournalError(path + ": " + e.what());
-  } catch (const nlohmann::json::exception& e) {
-    throw JournalError(path + ": a damaged state: " + e.what());
   }
-  for (Segment& segment : file.segments)
-    std::ranges::stable_sort(segment.states, {}, [](const Segment::State& state) {
-      return std::pair(state.tick, state.commands);
-    });
   return file;
 }
 

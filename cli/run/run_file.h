@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/journal/journal.h"
+#include "core/mcap/mcap_reader.h"
 
 namespace regrasp::run {
 
@@ -27,9 +28,11 @@ struct RunFile {
   std::vector<Segment> segments;
   bool complete = false;  ///< false: its writer was killed
   std::uint64_t messages = 0;
+  std::vector<McapLoss> lost;  ///< what could not be read
 };
 
-/// Throws McapError, JournalError (which name file and place).
+/// Of a damaged file, what leads without a gap from the beginning of each segment. Throws
+/// McapError, JournalError (which name file and place).
 RunFile ReadRunFile(const std::string& path);
 
 }  // namespace regrasp::run

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "core/files/draft.h"
 #include "core/journal/replay.h"
 #include "snapshots/snapshots.h"
 
@@ -39,7 +40,7 @@ struct Scratch {
 VideoResult WriteVideo(const RunFile& file, const VideoOptions& options, const std::string& out) {
   if (fs::path(out).extension() != ".mp4")
     throw std::runtime_error(out + ": a film's name ends in .mp4");
-  if (fs::exists(out)) throw std::runtime_error(out + " exists; give another name with -o");
+  Draft draft(out, Draft::Existing::kKeep);
   const Segment& segment = file.segments.back();
   const SessionConfig& config = segment.journal->config;
   const double dt = config.world.dt;
@@ -49,7 +50,7 @@ VideoResult WriteVideo(const RunFile& file, const VideoOptions& options, const s
   const Scratch scratch;
   const std::string scene_file = scratch.path / "scene.png",
                     curve_file = scratch.path / "curve.png";
-  cv::VideoWriter writer(out, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), options.fps,
+  cv::VideoWriter writer(draft.path(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), options.fps,
                          {kWidth, kSceneHeight + kCurveHeight});
   if (!writer.isOpened()) throw std::runtime_error("cannot write " + out);
 
@@ -81,6 +82,11 @@ VideoResult WriteVideo(const RunFile& file, const VideoOptions& options, const s
     ++result.frames;
   }
   writer.release();
+  // The writer tells of no failure: what it could not write is missing.
+  std::error_code error;
+  if (result.frames == 0 || fs::file_size(draft.path(), error) == 0 || error)
+    throw std::runtime_error("cannot write " + out);
+  draft.Commit();
   result.duration_s = result.frames / options.fps;
   return result;
 }

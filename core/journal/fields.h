@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/common/frames.h"
@@ -36,6 +37,8 @@ struct Load {
     if (found == json.end()) throw JournalError(std::string(key) + " is missing");
     try {
       FromJson(*found, &value);
+    } catch (const JournalError& e) {
+      throw JournalError(std::string(key) + ": " + e.what());
     } catch (const nlohmann::json::exception&) {
       throw JournalError(std::string(key) + " is of another kind than expected");
     }
@@ -65,12 +68,28 @@ struct Value {  // a structure
 template <Plain T>
 struct Value<T> {
   static Json To(const T& value) { return value; }
-  static void From(const Json& json, T* value) { *value = json.get<T>(); }
+  static void From(const Json& json, T* value) {
+    // The library would cut or round what does not fit.
+    if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+      if (!json.is_number_integer()) throw JournalError("an integer is expected");
+      const bool fits = json.is_number_unsigned() ? std::in_range<T>(json.get<std::uint64_t>())
+                                                  : std::in_range<T>(json.get<std::int64_t>());
+      if (!fits) throw JournalError("an integer is out of range");
+    } else if constexpr (std::is_floating_point_v<T>) {
+      if (!json.is_number()) throw JournalError("a number is expected");
+    }
+    *value = json.get<T>();
+  }
 };
 template <Enumeration T>
 struct Value<T> {
   static Json To(const T& value) { return static_cast<int>(value); }
-  static void From(const Json& json, T* value) { *value = static_cast<T>(json.get<int>()); }
+  static void From(const Json& json, T* value) {
+    int number = 0;
+    FromJson(json, &number);
+    *value = static_cast<T>(number);
+    if (static_cast<int>(*value) != number) throw JournalError("a choice is out of range");
+  }
 };
 template <Matrix T>
 struct Value<T> {  // row by row; a vector of free length takes the length it finds
@@ -87,9 +106,9 @@ struct Value<T> {  // row by row; a vector of free length takes the length it fi
       value->resize(size);
     }
     if (size != value->size()) throw JournalError("a vector has the wrong number of numbers");
+    if (!json.is_array()) throw JournalError("a list of numbers is expected");
     for (Eigen::Index i = 0; i < size; ++i)
-      (*value)(i / value->cols(), i % value->cols()) =
-          json[static_cast<std::size_t>(i)].template get<typename T::Scalar>();
+      FromJson(json[static_cast<std::size_t>(i)], &(*value)(i / value->cols(), i % value->cols()));
   }
 };
 template <>
@@ -113,6 +132,7 @@ struct Value<std::vector<T>> {
   }
   static void From(const Json& json, std::vector<T>* values) {
     values->clear();
+    if (!json.is_array()) throw JournalError("a list is expected");
     for (const Json& item : json) FromJson(item, &values->emplace_back());
   }
 };

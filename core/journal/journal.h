@@ -41,6 +41,7 @@ struct Checkpoint {
   std::string build;             ///< BuildIdentity() of the program that saved it
   std::string state;             ///< of the session, "holding"
   JobRecord job;                 ///< the job that was running; id 0 = none
+  std::size_t commands = 0;      ///< of the journal, as the first line of the file says
   Journal journal;
   /// Of the session: ToBase64(SaveState()), see saved_state.h; empty: there is only the journal.
   std::string saved_state;

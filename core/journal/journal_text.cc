@@ -3,6 +3,9 @@
 #include <array>
 #include <charconv>
 
+#include "core/files/names.h"
+#include "core/journal/check.h"
+#include "core/journal/checked_json.h"
 #include "core/journal/model_fields.h"
 
 namespace regrasp {
@@ -33,14 +36,6 @@ constexpr std::array kMethods = {
     MethodName{CommandType::kCancelJob, "job.cancel"},
     MethodName{CommandType::kBranch, "branch"},
 };
-
-Json Parse(std::string_view text) {
-  try {
-    return Json::parse(text);
-  } catch (const nlohmann::json::exception& e) {
-    throw JournalError(std::string("not JSON: ") + e.what());
-  }
-}
 
 /// What each command carries. `finger` and `parameter` go by name.
 template <typename A>
@@ -115,7 +110,7 @@ void CheckFormat(const Json& json, const char* expected) {
   std::string format;
   Load{json}("format", format);
   if (format != expected)
-    throw JournalError("format is '" + format + "', this build reads '" + expected + "'");
+    throw JournalError("format is '" + Shown(format) + "', this build reads '" + expected + "'");
 }
 
 }  // namespace
@@ -131,7 +126,7 @@ std::uint64_t ParseHash(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, hash, 16);
   if (error != std::errc() || rest != end || text.size() != 16)
-    throw JournalError("'" + text.substr(0, 32) + "' is no state hash");
+    throw JournalError("'" + Shown(text) + "' is no state hash");
   return hash;
 }
 
@@ -152,7 +147,7 @@ std::string ConfigText(const SessionConfig& config, int segment) {
 }
 
 ConfigRead ParseConfig(std::string_view text) {
-  const Json json = Parse(text);
+  const Json json = ParseFileJson(text);
   CheckFormat(json, kRunFormat);
   ConfigRead read;
   Load load{json};
@@ -163,6 +158,7 @@ ConfigRead ParseConfig(std::string_view text) {
   load("parameters", read.config.parameters);
   load("world", read.config.world);
   load("model", read.config.model);
+  CheckConfig(read.config);
   return read;
 }
 
@@ -187,7 +183,7 @@ std::string EntryText(const JournalEntry& entry, const SessionConfig& config, in
 }
 
 EntryRead ParseEntry(std::string_view text, const SessionConfig& config) {
-  const Json json = Parse(text);
+  const Json json = ParseFileJson(text);
   EntryRead read;
   std::string method, finger, parameter, hash;
   Load load{json};
@@ -200,14 +196,15 @@ EntryRead ParseEntry(std::string_view text, const SessionConfig& config) {
   Command& command = read.entry.command;
   const auto known = std::find_if(kMethods.begin(), kMethods.end(),
                                   [&](const MethodName& m) { return m.name == method; });
-  if (known == kMethods.end()) throw JournalError("unknown method '" + method + "'");
+  if (known == kMethods.end()) throw JournalError("unknown method '" + Shown(method) + "'");
   command.type = known->type;
   CommandFields(load, command, finger, parameter);
   if (command.type == CommandType::kExplore) command.finger = config.model.hand.FindFinger(finger);
   if (command.type == CommandType::kParameter) {
     command.parameter = FindParameter(parameter);
-    if (command.parameter < 0) throw JournalError("unknown parameter '" + parameter + "'");
+    if (command.parameter < 0) throw JournalError("unknown parameter '" + Shown(parameter) + "'");
   }
+  CheckEntry(read.entry, config);
   return read;
 }
 
@@ -250,7 +247,7 @@ std::string CheckpointText(const Checkpoint& checkpoint) {
 }
 
 Checkpoint ParseCheckpointHead(std::string_view line) {
-  const Json json = Parse(line);
+  const Json json = ParseFileJson(line);
   CheckFormat(json, kCheckpointFormat);
   Checkpoint checkpoint;
   std::string hash;
@@ -264,9 +261,15 @@ Checkpoint ParseCheckpointHead(std::string_view line) {
   load("object", checkpoint.journal.config.model.object.name);
   load("job", checkpoint.job.id);
   load("job_method", checkpoint.job.method);
-  std::size_t commands = 0;
-  load("commands", commands);
-  checkpoint.journal.entries.resize(commands);
+  load("commands", checkpoint.commands);
+  CheckRange("tick", static_cast<double>(checkpoint.tick), 0, static_cast<double>(kMaxTick));
+  CheckRange("job", static_cast<double>(checkpoint.job.id), 0, 9007199254740992.0);
+  CheckRange("job_method", static_cast<double>(checkpoint.job.method), 0,
+             static_cast<double>(JobMethod::kRestore));
+  for (const std::string* name :
+       {&checkpoint.name, &checkpoint.state, &checkpoint.journal.config.model.object.name})
+    if (const std::string fault = NameFault(*name); !fault.empty())
+      throw JournalError("'" + Shown(*name) + "' is no name: it " + fault);
   checkpoint.state_hash = ParseHash(hash);
   return checkpoint;
 }
@@ -282,11 +285,17 @@ Checkpoint ParseCheckpoint(std::string_view text) {
   };
   Checkpoint checkpoint = ParseCheckpointHead(next_line());
   checkpoint.journal.config = ParseConfig(next_line()).config;
-  for (JournalEntry& entry : checkpoint.journal.entries)
-    entry = ParseEntry(next_line(), checkpoint.journal.config).entry;
+  auto& entries = checkpoint.journal.entries;
+  while (entries.size() < checkpoint.commands) {
+    entries.push_back(ParseEntry(next_line(), checkpoint.journal.config).entry);
+    const std::int64_t tick = entries.back().tick;
+    CheckRange("tick of a command", static_cast<double>(tick),
+               entries.size() > 1 ? static_cast<double>(entries[entries.size() - 2].tick) : 0,
+               static_cast<double>(checkpoint.tick));
+  }
   if (text.empty()) return checkpoint;
   const std::uint64_t before = TextHash(whole.substr(0, whole.size() - text.size()));
-  const Json json = Parse(next_line());
+  const Json json = ParseFileJson(next_line());
   std::string belongs_to;
   Load load{json};
   load("belongs_to", belongs_to);

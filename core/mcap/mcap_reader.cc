@@ -1,12 +1,16 @@
 #include "core/mcap/mcap_reader.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <map>
+#include <optional>
 
 #include "core/mcap/mcap_format.h"
 
@@ -14,6 +18,12 @@ namespace regrasp {
 namespace {
 
 using namespace mcap;
+
+/// More than this in one record is taken for a damaged length. Our chunks have 1 MiB.
+constexpr std::uint64_t kMaxRecord = 256u << 20;
+constexpr std::uint64_t kChunkHead = 40;  // times, size, checksum, no compression, size
+constexpr std::uint64_t kFooterRecord = kRecordHead + 20;
+constexpr std::uint64_t kWindow = 1u << 20;  // bytes looked at together while searching
 
 /// Reads numbers and strings off the front; `ok` turns false at the end of the data.
 struct Cursor {
@@ -37,101 +47,292 @@ struct Cursor {
     return static_cast<T>(value);
   }
   std::string_view Text() { return Take(Number<std::uint32_t>()); }
+  bool whole() const { return ok && data.empty(); }
+};
+
+std::uint32_t Crc(std::string_view data) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(data.data()), data.size()));
+}
+
+/// A regular file, read piece by piece: it may be larger than the memory.
+class File {
+ public:
+  explicit File(const std::string& path) : path_(path) {
+    fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    struct stat info {};
+    if (fd_ < 0 || ::fstat(fd_, &info) != 0) Fail(std::strerror(errno));
+    if (!S_ISREG(info.st_mode)) Fail("not a regular file");
+    size_ = static_cast<std::uint64_t>(info.st_size);
+  }
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  std::uint64_t size() const { return size_; }
+  /// Fewer bytes at the end of the file.
+  std::string At(std::uint64_t offset, std::uint64_t size) const {
+    std::string data(std::min(size, size_ - std::min(size_, offset)), '\0');
+    std::size_t have = 0;
+    while (have < data.size()) {
+      const ssize_t got =
+          ::pread(fd_, data.data() + have, data.size() - have, static_cast<off_t>(offset + have));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) Fail(std::strerror(errno));
+      if (got == 0) break;
+      have += static_cast<std::size_t>(got);
+    }
+    data.resize(have);
+    return data;
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& cause) const {
+    throw McapError("cannot read " + path_ + ": " + cause);
+  }
+  const std::string& path_;
+  int fd_ = -1;
+  std::uint64_t size_ = 0;
+};
+
+struct Chunk {
+  std::uint64_t start = 0, end = 0;
+  std::uint32_t crc = 0;
+  std::string_view records;
 };
 
 class Reader {
  public:
   Reader(const std::string& path, const std::function<void(const McapMessage&)>& message)
-      : path_(path), message_(message) {}
+      : path_(path), file_(path), message_(message) {}
 
-  /// Every whole record in `data`.
-  void Records(std::string_view data) {
-    Cursor cursor{data};
-    while (!summary.complete) {
-      const auto opcode = cursor.Number<std::uint8_t>();
-      const auto length = cursor.Number<std::uint64_t>();
-      const std::string_view content = cursor.Take(length);
-      if (!cursor.ok) return;
-      Record(opcode, {content});
+  McapSummary Read() {
+    if (file_.At(0, kMagic.size()) != std::string_view(kMagic.data(), kMagic.size()))
+      throw McapError(path_ + " is not an MCAP file");
+    ReadSummarySection();
+    for (std::uint64_t offset = kMagic.size(); !summary_.complete;) {
+      const auto next = OneRecord(offset);
+      if (!next) break;
+      offset = *next;
     }
+    if (summary_.complete && expected_ > summary_.messages && summary_.lost.empty())
+      Lose({0, 0, 0, 0,
+            "the file counts " + std::to_string(expected_) + " messages, " +
+                std::to_string(summary_.messages) + " were found"});
+    return std::move(summary_);
   }
-  McapSummary summary;
 
  private:
-  void Record(std::uint8_t opcode, Cursor content) {
+  /// Reads what stands at `offset`; returns where the next record is, or nothing at the end.
+  std::optional<std::uint64_t> OneRecord(std::uint64_t offset) {
+    const std::string head = file_.At(offset, kRecordHead);
+    if (head.size() < kRecordHead) return {};
+    Cursor cursor{head};
+    const auto opcode = cursor.Number<std::uint8_t>();
+    const auto length = cursor.Number<std::uint64_t>();
+    // A length beyond the end: the writer was killed there, or it is damaged and more follows.
+    const bool fits = length <= file_.size() - offset - kRecordHead;
+    if (fits && length <= kMaxRecord && opcode != 0) {
+      const std::string content = file_.At(offset + kRecordHead, length);
+      McapLoss loss;
+      if (Record(opcode, content, &loss)) return offset + kRecordHead + length;
+      if (loss.bytes != 0) {  // the frame is whole, its content is not
+        loss.offset = offset;
+        loss.bytes = kRecordHead + length;
+        Lose(std::move(loss));
+        return offset + kRecordHead + length;
+      }
+    }
+    const auto next = FindChunk(offset + 1);
+    if (!next && !fits) return {};
+    const std::uint64_t until = next.value_or(file_.size());
+    Lose({offset, until - offset, 0, 0, "a damaged record"});
+    return next;
+  }
+
+  /// False: damaged. With loss->bytes set, only the content is.
+  bool Record(std::uint8_t opcode, std::string_view data, McapLoss* loss) {
+    Cursor content{data};
     switch (opcode) {
-      case kSchema: {
-        const auto number = content.Number<std::uint16_t>();
-        content.Text();  // name
-        content.Text();  // encoding
-        schemas_[number] = content.Text();
-        break;
-      }
-      case kChannel: {
-        const auto number = content.Number<std::uint16_t>();
-        const auto schema = content.Number<std::uint16_t>();
-        channels_[number] = {std::string(content.Text()), schemas_[schema]};
-        break;
-      }
-      case kMessage: {
-        const auto channel = content.Number<std::uint16_t>();
-        content.Number<std::uint32_t>();
-        McapMessage message;
-        message.time = content.Number<std::uint64_t>();
-        content.Number<std::uint64_t>();
-        const auto found = channels_.find(channel);
-        if (!content.ok || found == channels_.end()) throw McapError(path_ + ": a damaged message");
-        message.topic = found->second.topic;
-        message.schema = found->second.schema;
-        message.data = content.data;
-        ++summary.messages;
-        message_(message);
-        break;
-      }
-      case kChunk: {
-        content.Take(24);  // times, size
-        const auto crc = content.Number<std::uint32_t>();
-        if (!content.Text().empty()) throw McapError(path_ + ": compressed, which is not read");
-        const std::string_view records = content.Take(content.Number<std::uint64_t>());
-        if (!content.ok) throw McapError(path_ + ": a damaged chunk");
-        const auto found = ::crc32(0, reinterpret_cast<const Bytef*>(records.data()),
-                                   static_cast<uInt>(records.size()));
-        if (crc != 0 && crc != found) throw McapError(path_ + ": a chunk's checksum is wrong");
-        Records(records);
-        break;
-      }
+      case kHeader:
+        content.Text();
+        content.Text();
+        return content.whole();
+      case kSchema:
+      case kChannel:
+        return Definition(opcode, content, false);
+      case kMessage:
+        if (Message(content)) return true;
+        *loss = {0, 1, 0, 0, "a message of no channel"};
+        return false;
+      case kChunk:
+        return ReadChunk(data, loss);
+      case kMessageIndex:
+        content.Number<std::uint16_t>();
+        content.Text();
+        return content.whole();
       case kDataEnd:
-        summary.complete = true;
-        break;
+        summary_.complete = data.size() == 4;
+        return summary_.complete;
       default:
-        break;
+        return opcode <= kDataEnd || opcode >= 0x80;  // others are for programs of their own
     }
   }
 
-  const std::string& path_;
+  /// Those of the summary section come first, and are believed.
+  bool Definition(std::uint8_t opcode, Cursor content, bool of_summary) {
+    const auto number = content.Number<std::uint16_t>();
+    if (opcode == kSchema) {
+      content.Text();  // name
+      content.Text();  // encoding
+      const std::string_view schema = content.Text();
+      if (!content.whole()) return false;
+      const auto known = schemas_.try_emplace(number, schema).first;
+      return of_summary || known->second == schema;
+    }
+    const auto schema = content.Number<std::uint16_t>();
+    const std::string_view topic = content.Text();
+    content.Text();  // encoding
+    content.Text();  // metadata
+    if (!content.whole()) return false;
+    const auto known =
+        channels_.try_emplace(number, Channel{std::string(topic), schemas_[schema]}).first;
+    return of_summary || known->second.topic == topic;
+  }
+
+  bool Message(Cursor content) {
+    const auto channel = content.Number<std::uint16_t>();
+    content.Number<std::uint32_t>();  // sequence
+    McapMessage message;
+    message.time = content.Number<std::uint64_t>();
+    content.Number<std::uint64_t>();  // of publication
+    const auto found = channels_.find(channel);
+    if (!content.ok || found == channels_.end()) return false;
+    message.topic = found->second.topic;
+    message.schema = found->second.schema;
+    message.data = content.data;
+    ++summary_.messages;
+    message_(message);
+    return true;
+  }
+
+  /// Nothing when the record is no chunk of ours.
+  static std::optional<Chunk> ParseChunk(std::string_view data, std::string_view* compression) {
+    Cursor content{data};
+    Chunk chunk;
+    chunk.start = content.Number<std::uint64_t>();
+    chunk.end = content.Number<std::uint64_t>();
+    const auto size = content.Number<std::uint64_t>();
+    chunk.crc = content.Number<std::uint32_t>();
+    *compression = content.Text();
+    chunk.records = content.Take(content.Number<std::uint64_t>());
+    if (!content.whole() || (compression->empty() && chunk.records.size() != size)) return {};
+    return chunk;
+  }
+
+  bool ReadChunk(std::string_view data, McapLoss* loss) {
+    std::string_view compression;
+    const auto chunk = ParseChunk(data, &compression);
+    if (compression == "lz4" || compression == "zstd")
+      throw McapError(path_ + ": compressed (" + std::string(compression) + "), which is not read");
+    if (!chunk || !compression.empty()) return false;
+    *loss = {0, 1, chunk->start, chunk->end, "the checksum of a chunk is wrong"};
+    if (chunk->crc != 0 && chunk->crc != Crc(chunk->records)) return false;
+    loss->cause = "a damaged record in a chunk";
+    Cursor records{chunk->records};
+    while (!records.data.empty()) {
+      const auto opcode = records.Number<std::uint8_t>();
+      const std::string_view content = records.Take(records.Number<std::uint64_t>());
+      if (!records.ok) return false;
+      const bool good = opcode == kMessage ? Message({content})
+                        : opcode == kSchema || opcode == kChannel
+                            ? Definition(opcode, {content}, false)
+                            : opcode >= 0x80;  // chunks hold no chunks
+      if (!good) return false;
+    }
+    return true;
+  }
+
+  /// The next whole chunk with a right checksum from `offset` on.
+  std::optional<std::uint64_t> FindChunk(std::uint64_t offset) {
+    for (std::uint64_t base = offset; base < file_.size(); base += kWindow) {
+      const std::string window = file_.At(base, kWindow + kRecordHead + kChunkHead);
+      for (std::size_t i = 0; i < std::min<std::size_t>(kWindow, window.size()); ++i) {
+        if (window[i] != kChunk) continue;
+        Cursor head{std::string_view(window).substr(i + 1)};
+        const auto length = head.Number<std::uint64_t>();
+        head.Take(16);
+        const auto size = head.Number<std::uint64_t>();
+        const auto crc = head.Number<std::uint32_t>();
+        const auto compression = head.Number<std::uint32_t>();
+        if (!head.ok || compression != 0 || crc == 0 || size > kMaxRecord ||
+            length != size + kChunkHead)
+          continue;
+        const std::string records = file_.At(base + i + kRecordHead + kChunkHead, size);
+        if (records.size() == size && Crc(records) == crc) return base + i;
+      }
+    }
+    return {};
+  }
+
+  /// Definitions, and how many messages there should be, as the end of a whole file repeats them.
+  void ReadSummarySection() {
+    const std::uint64_t tail = kFooterRecord + kMagic.size();
+    if (file_.size() < tail + kMagic.size()) return;
+    const std::string end = file_.At(file_.size() - tail, tail);
+    if (!end.ends_with(std::string_view(kMagic.data(), kMagic.size()))) return;
+    Cursor footer{end};
+    if (footer.Number<std::uint8_t>() != kFooter || footer.Number<std::uint64_t>() != 20) return;
+    const auto begin = footer.Number<std::uint64_t>();
+    const std::uint64_t limit = file_.size() - tail;
+    if (begin == 0 || begin > limit || limit - begin > kMaxRecord) return;
+    const std::string section = file_.At(begin, limit - begin);
+    Cursor cursor{section};
+    while (!cursor.data.empty()) {
+      const auto opcode = cursor.Number<std::uint8_t>();
+      const std::string_view content = cursor.Take(cursor.Number<std::uint64_t>());
+      if (!cursor.ok) return;
+      if (opcode == kSchema || opcode == kChannel) Definition(opcode, {content}, true);
+      if (opcode == kStatistics) expected_ = Cursor{content}.Number<std::uint64_t>();
+    }
+  }
+
+  void Lose(McapLoss loss) {
+    if (summary_.lost.size() < McapSummary::kMaxLosses) summary_.lost.push_back(std::move(loss));
+  }
+
+  const std::string path_;
+  const File file_;
   const std::function<void(const McapMessage&)>& message_;
   struct Channel {
     std::string topic, schema;
   };
   std::map<std::uint16_t, std::string> schemas_;
   std::map<std::uint16_t, Channel> channels_;
+  McapSummary summary_;
+  std::uint64_t expected_ = 0;  ///< messages
 };
 
 }  // namespace
 
+std::string LossText(const McapLoss& loss) {
+  std::string text;
+  if (loss.bytes != 0)
+    text = std::to_string(loss.bytes) + " bytes at " + std::to_string(loss.offset);
+  if (loss.start != 0 || loss.end != 0) {
+    char times[64];
+    std::snprintf(times, sizeof times, " (%.3f s ... %.3f s)",
+                  static_cast<double>(loss.start) * 1e-9, static_cast<double>(loss.end) * 1e-9);
+    text += times;
+  }
+  return text + (text.empty() ? "" : ": ") + loss.cause;
+}
+
 McapSummary ReadMcap(const std::string& path,
                      const std::function<void(const McapMessage&)>& message) {
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  const std::string data{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in)
-    throw McapError("cannot read " + path + ": " +
-                    (errno ? std::strerror(errno) : "unknown cause"));
-  if (!data.starts_with(std::string_view(kMagic.data(), kMagic.size())))
-    throw McapError(path + " is not an MCAP file");
-  Reader reader(path, message);
-  reader.Records(std::string_view(data).substr(kMagic.size()));
-  return reader.summary;
+  return Reader(path, message).Read();
 }
 
 }  // namespace regrasp

@@ -166,6 +166,7 @@ void McapWriter::Finish() {
   Put(file.data);
   const int fd = fd_;
   fd_ = -1;
+  ::fsync(fd);  // some file systems cannot
   if (::close(fd) != 0) throw McapError("cannot write " + path_ + ": " + std::strerror(errno));
 }
 

@@ -39,6 +39,10 @@ struct DaemonConfig {
   bool paused = false;
   std::string noise = "paper";  ///< preset
   int max_clients = 64;
+  // What is kept at most.
+  int max_recording_mb = 4096;
+  int max_incidents = 100, max_pictures = 500, max_checkpoints = 200;
+  int max_commands = 200'000;
   std::string log_level = "info";   ///< trace debug info warn error off
   std::string log_format = "text";  ///< text or json
   std::string stepper = "auto";     ///< fast, exact or auto

@@ -39,6 +39,20 @@ constexpr ConfigKey FlagKey(std::string_view name, std::string_view sentence) {
           [](C& config, const std::string& text) { config.*Member = text == "true"; }};
 }
 
+/// A budget; what happens at it is said in docs/promises.md.
+template <int C::*Member>
+constexpr ConfigKey CountKey(std::string_view name, std::string_view sentence, double max) {
+  return {name,
+          "N",
+          sentence,
+          KeyKind::kInteger,
+          [](const C& config) { return std::to_string(config.*Member); },
+          [](C& config, const std::string& text) { config.*Member = std::stoi(text); },
+          false,
+          1,
+          max};
+}
+
 constexpr std::array kKeys = {
     TextKey<&C::socket>("socket", "PATH", "where to listen; empty: $XDG_RUNTIME_DIR, /run or /tmp"),
     TextKey<&C::output_dir>("output_dir", "DIR",
@@ -69,6 +83,15 @@ constexpr std::array kKeys = {
               [](const C& config) { return std::to_string(config.max_clients); },
               [](C& config, const std::string& text) { config.max_clients = std::stoi(text); },
               true, 1, 1000},
+    CountKey<&C::max_recording_mb>("max_recording_mb",
+                                   "megabytes of one run file; then it is ended", 1e6),
+    CountKey<&C::max_incidents>("max_incidents", "incidents kept; then the oldest goes", 1e5),
+    CountKey<&C::max_pictures>("max_pictures",
+                               "pictures kept; then the oldest that nobody named goes", 1e5),
+    CountKey<&C::max_checkpoints>("max_checkpoints",
+                                  "checkpoints kept; then saving another is refused", 1e5),
+    CountKey<&C::max_commands>("max_commands",
+                               "commands of one run; then more are refused until a reset", 1e7),
     TextKey<&C::log_level>("log_level", "LEVEL", "trace, debug, info, warn, error or off", true),
     TextKey<&C::log_format>("log_format", "FORMAT", "text or json, on standard error"),
     TextKey<&C::stepper>("stepper", "NAME",

@@ -1,24 +1,23 @@
 #include "daemon/output/files.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <csignal>
+#include <cstdlib>
 
+#include "core/files/draft.h"
+#include "core/files/names.h"
+#include "core/files/read_file.h"
 #include "daemon/wire/rpc.h"
 
 namespace regrasp {
 namespace {
 
-constexpr std::size_t kMaxFileName = 128;
-
-[[noreturn]] void Fail(const char* what, const std::filesystem::path& path) {
-  throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path.string(),
-                                       errno ? std::strerror(errno) : "unknown cause"));
-}
+/// Of a file that is read whole: a checkpoint.
+constexpr std::uint64_t kMaxReadBytes = 256u << 20;
 
 }  // namespace
 
@@ -32,12 +31,8 @@ std::string CheckedFileName(const std::string& name, std::string_view param,
                                 std::string(param),
                                 {suffixes.begin(), suffixes.end()}});
   };
-  if (name.empty() || name.size() > kMaxFileName)
-    refuse(fmt::format("file name of {} bytes; allowed are 1 to {}", name.size(), kMaxFileName));
-  const bool control =
-      std::ranges::any_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  if (control || name.find('/') != std::string::npos || name.front() == '.')
-    refuse(fmt::format("{} is not a plain file name", param));
+  if (const std::string fault = FileNameFault(name); !fault.empty())
+    refuse(fmt::format("{} is not a plain file name: it {}", param, fault));
   const std::string suffix = std::filesystem::path(name).extension().string();
   if (suffixes.size() > 0 && std::ranges::find(suffixes, suffix) == suffixes.end())
     refuse(fmt::format("{} '{}' does not end in {}", param, name, fmt::join(suffixes, ", ")));
@@ -45,23 +40,71 @@ std::string CheckedFileName(const std::string& name, std::string_view param,
 }
 
 void ReplaceFile(const std::filesystem::path& target, std::string_view text) {
-  std::filesystem::create_directories(target.parent_path());
-  const std::filesystem::path draft = target.parent_path() / ".draft";
-  std::filesystem::remove(draft);
-  errno = 0;
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) Fail("write", target);
-  std::filesystem::rename(draft, target);
+  WriteWhole(target, text, Draft::Existing::kReplace);
 }
 
 std::string ReadFile(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in) Fail("read", path);
-  return text;
+  return ReadRegularFile(path, kMaxReadBytes);
+}
+
+std::string ReadHead(const std::filesystem::path& path, std::uint64_t bytes) {
+  return ReadRegularFile(path, bytes, bytes);
+}
+
+std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& directory,
+                                           std::initializer_list<std::string_view> suffixes) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  if (!std::filesystem::exists(directory, error) && !error) return files;  // nothing was written
+  std::filesystem::directory_iterator entries(directory, error);
+  for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
+    const std::string suffix = entries->path().extension().string();
+    std::error_code unknown;
+    if (std::ranges::find(suffixes, suffix) != suffixes.end() &&
+        FileNameFault(entries->path().filename().string()).empty() &&
+        entries->is_regular_file(unknown))
+      files.push_back(entries->path());
+  }
+  if (error)
+    throw std::runtime_error(
+        fmt::format("cannot read the directory {}: {}", directory.string(), error.message()));
+  std::ranges::sort(files);
+  return files;
+}
+
+std::filesystem::path FreeFile(const std::filesystem::path& directory, const std::string& name,
+                               std::string_view suffix) {
+  std::error_code ignored;
+  std::filesystem::path file = directory / fmt::format("{}{}", name, suffix);
+  for (int i = 2; std::filesystem::exists(std::filesystem::symlink_status(file, ignored)); ++i)
+    file = directory / fmt::format("{}-{}{}", name, i, suffix);
+  return file;
+}
+
+void RemoveAbandonedDrafts(const std::filesystem::path& directory) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
+    const std::string name = entry.path().filename().string();
+    constexpr std::string_view kBegin = ".draft-";
+    if (!name.starts_with(kBegin)) continue;
+    const pid_t maker = std::atoi(name.c_str() + kBegin.size());
+    const bool alive =
+        maker > 0 && maker != ::getpid() && (::kill(maker, 0) == 0 || errno == EPERM);
+    std::error_code ignored;
+    if (!alive) std::filesystem::remove_all(entry.path(), ignored);
+  }
+}
+
+void RemoveOldest(const std::vector<std::filesystem::path>& files, std::size_t keep,
+                  const std::function<void(const std::filesystem::path&)>& removed) {
+  if (files.size() <= keep) return;
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> by_age;
+  std::error_code ignored;
+  for (const auto& file : files)
+    by_age.emplace_back(std::filesystem::last_write_time(file, ignored), file);
+  std::ranges::sort(by_age);
+  for (std::size_t i = 0; i < files.size() - keep; ++i)
+    if (std::filesystem::remove(by_age[i].second, ignored) && removed) removed(by_age[i].second);
 }
 
 }  // namespace regrasp

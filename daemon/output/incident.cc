@@ -12,6 +12,8 @@ using Frames = std::vector<std::shared_ptr<const Frame>>;
 
 /// A touch of fewer frames than this (30 ms) is the object brushing past.
 constexpr std::size_t kTouchFrames = 3;
+constexpr std::size_t kDisturbancesTold = 5;  // in the sentence, the last ones; the record has more
+constexpr std::size_t kEventsKept = 500;      // in the record, the last ones
 
 std::string FingerName(const HandModel& hand, int finger) {
   if (finger < 0 || finger >= hand.num_fingers()) return "?";
@@ -87,10 +89,15 @@ std::string Situation(const Incident& incident, const HandModel& hand) {
 
 std::string DisturbanceText(const Incident& incident) {
   std::string text;
-  for (const Event& event : incident.disturbances)
+  const std::size_t count = incident.disturbances.size();
+  const std::size_t first = count > kDisturbancesTold ? count - kDisturbancesTold : 0;
+  if (first > 0) text = fmt::format("{} earlier disturbances", first);
+  for (std::size_t i = first; i < count; ++i) {
+    const Event& event = incident.disturbances[i];
     text += fmt::format("{}{} {} {:.2f} s before", text.empty() ? "" : ", ", event.text,
                         event.kind == EventKind::kPush ? "began" : "was set",
                         incident.time_s - static_cast<double>(event.tick) * incident.dt);
+  }
   if (text.empty())
     return fmt::format("no push and no change of parameters in the last {:g} s", kIncidentWindow);
   return text;
@@ -156,6 +163,9 @@ Incident MakeIncident(const IncidentSource& source, const HandModel& hand) {
         event.kind == EventKind::kNoise)
       incident.disturbances.push_back(event);
   }
+  for (auto* kept : {&incident.events, &incident.disturbances})
+    if (kept->size() > kEventsKept)
+      kept->erase(kept->begin(), kept->end() - static_cast<std::ptrdiff_t>(kEventsKept));
   if (source.job.id != 0 && source.job.end_tick >= source.event.tick) incident.job = source.job;
   if (!incident.frames.empty()) incident.state = incident.frames.back()->state;
   FindContactEnds(hand, &incident);

@@ -3,6 +3,7 @@
 /// What led to a drop (or to a fault of the simulation): the frames and events of the last two
 /// seconds, what follows from them, and one sentence that says it. I/O thread; afterwards constant.
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,11 +65,15 @@ Incident MakeIncident(const IncidentSource& source, const HandModel& hand);
 Json IncidentJson(const Incident& incident, const HandModel& hand);
 
 /// "incident-4211" for the incident of tick 4211: the record is that with .json, the picture with
-/// .png.
+/// .png; with "-2" ... where that is taken.
 std::string IncidentName(std::int64_t tick);
 
-/// Writes the record. Throws std::runtime_error with path and cause.
-void WriteIncident(const Incident& incident, const HandModel& hand, const std::string& path);
+/// The record as text.
+std::string IncidentText(const Incident& incident, const HandModel& hand);
+
+/// Removes the oldest records, with their pictures, until `keep` are left. Throws
+/// std::runtime_error.
+void PruneIncidents(const std::filesystem::path& directory, std::size_t keep);
 
 /// Draws the picture: the newest `last_s` seconds of the window, 0: all. Throws what PlotIncident
 /// throws.

@@ -1,9 +1,7 @@
 // The record of an incident as JSON, and its picture.
 
-#include <fstream>
-#include <stdexcept>
-
 #include "core/gait/finger_gait.h"
+#include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/wire/frame_json.h"
 #include "snapshots/snapshots.h"
@@ -111,13 +109,19 @@ Json IncidentJson(const Incident& incident, const HandModel& hand) {
           {"samples", SamplesJson(incident, hand)}};
 }
 
-void WriteIncident(const Incident& incident, const HandModel& hand, const std::string& path) {
-  const std::string text =
-      IncidentJson(incident, hand).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written");
+std::string IncidentText(const Incident& incident, const HandModel& hand) {
+  return IncidentJson(incident, hand).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void PruneIncidents(const std::filesystem::path& directory, std::size_t keep) {
+  std::vector<std::filesystem::path> records = FilesIn(directory, {".json"});
+  std::erase_if(records, [](const std::filesystem::path& file) {
+    return !file.filename().string().starts_with("incident-");
+  });
+  RemoveOldest(records, keep, [](std::filesystem::path record) {
+    std::error_code ignored;
+    std::filesystem::remove(record.replace_extension(".png"), ignored);
+  });
 }
 
 void DrawIncident(const Incident& incident, const HandModel& hand, double last_s,

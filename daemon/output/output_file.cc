@@ -2,15 +2,12 @@
 
 namespace regrasp {
 
-std::uintmax_t WriteOutput(const std::filesystem::path& target,
+std::uintmax_t WriteOutput(const std::filesystem::path& target, Draft::Existing existing,
                            const std::function<void(const std::string& draft)>& write) {
-  std::filesystem::create_directories(target.parent_path());
-  const std::filesystem::path draft =
-      target.parent_path() / (".draft" + target.extension().string());
-  std::filesystem::remove(draft);
-  write(draft.string());
-  const std::uintmax_t bytes = std::filesystem::file_size(draft);
-  std::filesystem::rename(draft, target);
+  Draft draft(target, existing);
+  write(draft.path());
+  const std::uintmax_t bytes = std::filesystem::file_size(draft.path());
+  draft.Commit();
   return bytes;
 }
 

@@ -15,8 +15,12 @@ constexpr auto kFlushInterval = 200ms;  // what a kill can lose, of wall clock
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& path, double rate_hz, const Journal& journal,
-                   std::uint64_t run)
-    : path_(path), period_s_(1.0 / rate_hz), last_run_(run), writer_(path.string()) {
+                   std::uint64_t run, std::uint64_t max_bytes)
+    : path_(path),
+      period_s_(1.0 / rate_hz),
+      max_bytes_(max_bytes),
+      last_run_(run),
+      writer_(path.string()) {
   for (std::size_t i = 0; i < kRunTopics.size(); ++i)
     writer_.AddChannel(std::string(kRunTopics[i]), RunSchema(static_cast<RunTopic>(i)));
   Begin(journal, run);
@@ -76,7 +80,7 @@ Recorder::Numbers Recorder::numbers() const {
 
 void Recorder::Run() {
   auto flushed = std::chrono::steady_clock::now();
-  bool failed = false;
+  bool ended = false;  // the file takes no more
   for (bool more = true; more;) {
     std::deque<Item> items;
     {
@@ -86,7 +90,7 @@ void Recorder::Run() {
       waiting_samples_ = 0;
       more = !finishing_ || !items.empty();
     }
-    if (failed) continue;
+    if (ended) continue;
     try {
       bool flush = !more || std::chrono::steady_clock::now() - flushed >= kFlushInterval;
       for (const Item& item : items) {
@@ -97,12 +101,15 @@ void Recorder::Run() {
         writer_.Flush();
         flushed = std::chrono::steady_clock::now();
       }
-      if (!more) writer_.Finish();
+      const bool full = writer_.bytes() >= max_bytes_;
+      ended = full || !more;
+      if (ended) writer_.Finish();
       const std::lock_guard lock(mutex_);
       numbers_.messages = writer_.messages();
       numbers_.bytes = writer_.bytes();
+      numbers_.full = full;
     } catch (const std::exception& e) {
-      failed = true;
+      ended = true;
       const std::lock_guard lock(mutex_);
       numbers_.failure = e.what();
     }

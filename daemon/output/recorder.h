@@ -26,9 +26,9 @@ class Recorder {
   static constexpr std::size_t kMaxWaiting = 2000;  ///< frames; some 15 MB
 
   /// Creates the file. `rate_hz`: samples per second of simulated time. `journal`: the present run
-  /// up to now, number `run`. Throws McapError.
+  /// up to now, number `run`. The file ends, whole, once it has `max_bytes`. Throws McapError.
   Recorder(const std::filesystem::path& path, double rate_hz, const Journal& journal,
-           std::uint64_t run);
+           std::uint64_t run, std::uint64_t max_bytes);
   /// Finishes the file.
   ~Recorder();
 
@@ -42,6 +42,7 @@ class Recorder {
   struct Numbers {
     std::uint64_t messages = 0, bytes = 0, dropped = 0;
     std::string failure;  ///< why the file ended early; empty: it has not
+    bool full = false;    ///< it has as many bytes as it may, and is complete
   };
   Numbers numbers() const;
   const std::filesystem::path& path() const { return path_; }
@@ -69,6 +70,7 @@ class Recorder {
 
   const std::filesystem::path path_;
   const double period_s_;
+  const std::uint64_t max_bytes_;
   // I/O thread.
   std::uint64_t last_run_ = 0;
   double dt_ = 1e-3;

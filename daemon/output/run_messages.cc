@@ -220,6 +220,7 @@ std::string RunSchema(RunTopic topic) {
 std::string RunEvent(const Event& event, const HandModel& hand, double dt, int segment) {
   Json json = {{"segment", segment}};
   json.update(EventJson(event, hand, dt));
+  json.erase("incident");  // a file beside the daemon, which may have another name by then
   return json.dump();
 }
 

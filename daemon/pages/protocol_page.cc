@@ -11,6 +11,7 @@
 #include "core/quality/measures.h"
 #include "core/session/parameter_value.h"
 #include "daemon/output/run_messages.h"
+#include "daemon/wire/rpc.h"
 
 namespace regrasp {
 namespace {
@@ -35,7 +36,7 @@ for line in s.makefile():
 ```
 
 - **Lines.** A trailing `\r` and blank lines are ignored. A line has at most {bytes} bytes and {depth} nested levels;
-  a longer line is answered with -32011 and the connection is closed.
+  a longer line is answered with -32011 and the connection is closed. A line with a NUL byte is refused.
 - **Requests.** Parameters are given by name. `id` is a string of at most {id} bytes or an integer within ±2^53; a
   request without `id` is a notification and gets no answer. Duplicate keys, unknown parameters and numbers that
   are not finite are errors, and nothing has changed.
@@ -49,8 +50,10 @@ for line in s.makefile():
 - **Subscriptions.** `subscribe` answers `{{"sub": n}}`; then come notifications `event` with `sub`, `topic`, `seq` (from 1),
   `dropped` (samples left out so far), `t_s` (simulated time) and the fields of the topic. Samples are sent when there
   is something new, at most `rate_hz` times per second, and while time stands still the same again at that rate. Events are queued, samples are not.
-- **Slow clients.** A client with more than 1 MiB of unread answers, or none of them read for {stall} s, is
-  disconnected.
+- **Slow clients.** Requests of a client wait while it has more than 256 KiB of unread answers. A client that leaves
+  1 MiB of events unread, or reads nothing for {stall} s although answers are there, is disconnected.
+- **Long answers.** A line of answers has at most {answer} bytes; what would make it longer is answered with -32011,
+  and the connection stays.
 - **Files.** Names only; they are written to `output_dir` (see `status`).
 - **Units.** Field names carry them: `_m`, `_rad`, `_n`, `_s`, ... Vectors are in the world frame W, which is the
   palm's frame; manipulability is in 1e-4 m³.
@@ -125,9 +128,10 @@ std::string MeasureSection() {
 
 std::string ProtocolPage() {
   using fmt::arg;
-  std::string page = fmt::format(kIntroduction, arg("batch", kMaxBatch),
-                                 arg("bytes", kMaxRequestBytes), arg("depth", kMaxRequestDepth),
-                                 arg("id", kMaxIdBytes), arg("stall", kMaxOutputStallSeconds));
+  std::string page =
+      fmt::format(kIntroduction, arg("batch", kMaxBatch), arg("bytes", kMaxRequestBytes),
+                  arg("depth", kMaxRequestDepth), arg("id", kMaxIdBytes),
+                  arg("stall", kMaxOutputStallSeconds), arg("answer", kMaxAnswerBytes));
   page += "## Methods\n\n";
   for (const MethodSpec& method : MethodTable()) page += MethodSection(method);
   page +=

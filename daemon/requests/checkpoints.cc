@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 
+#include "core/files/names.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/saved_state.h"
 #include "daemon/output/files.h"
@@ -24,27 +24,24 @@ fs::path PathOf(Service& service, const Params& params) {
   const std::string name = params.String("name");
   const bool plain = std::ranges::all_of(
       name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
-  if (name.empty() || name.size() > kMaxName || !plain || name.front() == '.')
+  if (name.size() > kMaxName || !plain || !FileNameFault(name).empty())
     throw RpcException(RpcError{ErrorCode::kInvalidParams,
                                 "not a name for a checkpoint",
-                                "use 1 to 64 letters, digits, - _ . with no dot first",
+                                "use 1 to 64 letters, digits, - _ . with no dot and no - first",
                                 "name",
                                 {}});
   return service.config().output_dir / (name + std::string(kSuffix));
 }
 
-/// The checkpoints that can be read, by name.
-std::vector<Checkpoint> Heads(Service& service) {
+/// The checkpoints that can be read, by name. Any thread.
+std::vector<Checkpoint> Heads(const fs::path& directory) {
+  constexpr std::uint64_t kMaxHead = 4096;  // of the first line; ours have some 400 bytes
   std::vector<Checkpoint> heads;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(service.config().output_dir, ignored)) {
-    if (entry.path().extension() != kSuffix) continue;
-    std::ifstream in(entry.path());
-    std::string line;
-    std::getline(in, line);
+  for (const fs::path& path : FilesIn(directory, {kSuffix})) {
     try {
-      heads.push_back(ParseCheckpointHead(line));
-    } catch (const JournalError&) {
+      const std::string head = ReadHead(path, kMaxHead);
+      heads.push_back(ParseCheckpointHead(head.substr(0, head.find('\n'))));
+    } catch (const std::exception&) {
       continue;  // not one of ours, or damaged: restore tells which
     }
   }
@@ -60,7 +57,7 @@ Json HeadJson(const Checkpoint& checkpoint, double dt) {
           {"state_hash", HashText(checkpoint.state_hash)},
           {"seed", checkpoint.journal.config.seed},
           {"object", checkpoint.journal.config.model.object.name},
-          {"commands", checkpoint.journal.entries.size()},
+          {"commands", checkpoint.commands},
           {"same_build", checkpoint.build == BuildIdentity()}};
 }
 
@@ -71,7 +68,7 @@ std::shared_ptr<const Checkpoint> Read(Service& service, const fs::path& path,
   };
   if (!fs::exists(path)) {
     std::vector<std::string> names;
-    for (const Checkpoint& head : Heads(service)) names.push_back(head.name);
+    for (const Checkpoint& head : Heads(service.config().output_dir)) names.push_back(head.name);
     std::string hint = DidYouMean(name, names);
     if (hint.empty()) hint = "regrasp checkpoint list";
     refuse(ErrorCode::kNotFound, fmt::format("no checkpoint '{}'", name), std::move(hint));
@@ -122,10 +119,15 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
                           .build = std::string(BuildIdentity()),
                           .state = std::string(Name(mark.state)),
                           .job = mark.job,
+                          .commands = service.journal().entries.size(),
                           .journal = service.journal(),
                           .saved_state = ToBase64(*mark.saved)};
-      const auto write = [work, path] {
+      const auto write = [work, path, most = service.config().budgets.checkpoints] {
         try {
+          if (!fs::exists(path) && FilesIn(path.parent_path(), {kSuffix}).size() >= most)
+            throw std::runtime_error(
+                fmt::format("{} checkpoints are in {}, as many as max_checkpoints allows", most,
+                            path.parent_path().string()));
           ReplaceFile(path, CheckpointText(work->checkpoint));
         } catch (const std::exception& e) {
           work->failure = e.what();
@@ -152,9 +154,11 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
 }
 
 Outcome CheckpointList(Service& service, const Params&, Client&) {
-  Json list = Json::array();
-  for (const Checkpoint& head : Heads(service)) list.push_back(HeadJson(head, service.dt()));
-  return {.result = {{"checkpoints", std::move(list)}}};
+  return Later(service, [directory = service.config().output_dir, dt = service.dt()]() -> Json {
+    Json list = Json::array();
+    for (const Checkpoint& head : Heads(directory)) list.push_back(HeadJson(head, dt));
+    return {{"checkpoints", std::move(list)}};
+  });
 }
 
 Outcome CheckpointRestore(Service& service, const Params& params, Client&) {

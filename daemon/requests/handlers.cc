@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace regrasp {
 namespace {
@@ -58,6 +59,32 @@ constexpr std::array kHandlers = {
 static_assert(std::ranges::is_sorted(kHandlers, {}, &Entry::method));
 
 }  // namespace
+
+Outcome Later(Service& service, std::function<Json()> make) {
+  Outcome outcome;
+  outcome.begin = [&service, make = std::move(make)](Done done) {
+    struct Work {
+      Json result;
+      std::optional<RpcError> error;
+    };
+    const auto work = std::make_shared<Work>();
+    const auto run = [work, make] {
+      try {
+        work->result = make();
+      } catch (const RpcException& e) {
+        work->error = e.error();
+      } catch (const std::exception& e) {
+        work->error = RpcError{ErrorCode::kIo, e.what(), "look at output_dir in status", {}, {}};
+      }
+    };
+    const auto finish = [work, done] {
+      done(std::move(work->result), work->error ? &*work->error : nullptr);
+    };
+    if (!service.host().Background(run, finish))
+      throw RpcException(ErrorCode::kBusy, "too much is waiting for the disk", "try again later");
+  };
+  return outcome;
+}
 
 Handler FindHandler(std::string_view method) {
   const auto it = std::ranges::lower_bound(kHandlers, method, {}, &Entry::method);

@@ -8,6 +8,10 @@ namespace regrasp {
 
 Json StatusJson(Service& service);
 
+/// Answers with what `make` returns, or the RpcException it throws, on the worker thread: for what
+/// reads the disk. `make` shares nothing with the I/O thread.
+Outcome Later(Service& service, std::function<Json()> make);
+
 namespace handlers {
 
 // simulation.cc

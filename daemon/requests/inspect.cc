@@ -78,21 +78,21 @@ Json MethodDescription(Service& service, const MethodSpec& method) {
           {"job", method.job},   {"params", std::move(params)}, {"result", method.result}};
 }
 
+Outcome TopicAnswer(Service& service, const char* topic) {
+  return {.text = "{" + service.Topic(topic).fields + "}"};
+}
+
 }  // namespace
 
 Outcome Status(Service& service, const Params&, Client&) { return {.result = StatusJson(service)}; }
 Outcome Contacts(Service& service, const Params&, Client&) {
-  return {.result = service.Topic("contacts")};
+  return TopicAnswer(service, "contacts");
 }
-Outcome Joints(Service& service, const Params&, Client&) {
-  return {.result = service.Topic("joints")};
-}
+Outcome Joints(Service& service, const Params&, Client&) { return TopicAnswer(service, "joints"); }
 Outcome Quality(Service& service, const Params&, Client&) {
-  return {.result = service.Topic("quality")};
+  return TopicAnswer(service, "quality");
 }
-Outcome Truth(Service& service, const Params&, Client&) {
-  return {.result = service.Topic("truth")};
-}
+Outcome Truth(Service& service, const Params&, Client&) { return TopicAnswer(service, "truth"); }
 
 Outcome Describe(Service& service, const Params& params, Client&) {
   Json methods = Json::array();
@@ -122,10 +122,11 @@ Outcome Events(Service& service, const Params& params, Client&) {
   const auto& events = service.events();
   const auto count =
       std::min(events.size(), static_cast<std::size_t>(params.Integer("count", 100)));
-  Json list = Json::array();
+  std::string list;
   for (std::size_t i = events.size() - count; i < events.size(); ++i)
-    list.push_back(EventJson(events[i], service.hand(), service.dt()));
-  return {.result = {{"events", std::move(list)}, {"dropped", service.control().dropped()}}};
+    list += (list.empty() ? "" : ",") + events[i];
+  return {.text =
+              fmt::format(R"({{"events":[{}],"dropped":{}}})", list, service.control().dropped())};
 }
 
 Outcome Hello(Service&, const Params& params, Client&) {

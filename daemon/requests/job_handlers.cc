@@ -55,11 +55,15 @@ Outcome JobWait(Service& service, const Params& params, Client&) {
   const double timeout_s = params.Number("timeout_s", 0);
   Outcome outcome;
   outcome.overtaken = true;
-  outcome.begin = [&service, id, limited, timeout_s](Done done) {
-    struct Pending {
-      std::uint64_t timer = 0, waiter = 0;
-    };
-    const auto pending = std::make_shared<Pending>();
+  struct Pending {
+    std::uint64_t timer = 0, waiter = 0;
+  };
+  const auto pending = std::make_shared<Pending>();
+  outcome.abandon = [&service, pending] {
+    service.jobs().StopWaiting(pending->waiter);
+    service.host().Cancel(pending->timer);
+  };
+  outcome.begin = [&service, pending, id, limited, timeout_s](Done done) {
     pending->waiter = service.jobs().Wait(id, [&service, pending, done](const JobRecord& job) {
       if (pending->timer) service.host().Cancel(pending->timer);
       done(service.JobAnswer(job), nullptr);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -17,18 +16,30 @@ namespace fs = std::filesystem;
 constexpr double kDefaultRate = 25;  // [Hz]
 
 std::string FreeName(const fs::path& directory) {
+  std::error_code ignored;
   for (int number = 1;; ++number)
-    if (std::string name = fmt::format("run-{:03}.mcap", number); !fs::exists(directory / name))
+    if (std::string name = fmt::format("run-{:03}.mcap", number);
+        !fs::exists(fs::symlink_status(directory / name, ignored)))
       return name;
 }
 
-/// Whether the file ends as a finished one does.
-bool Complete(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
+/// Size, and whether it ends as a finished file does; null where that cannot be told.
+Json FileJson(const fs::path& path, const fs::path& recording) {
+  Json json = {{"file", path.filename().string()},
+               {"bytes", nullptr},
+               {"complete", nullptr},
+               {"recording", path == recording}};
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error) return json;
+  json["bytes"] = bytes;
+  std::ifstream in(path, std::ios::binary);  // of a regular file, see FilesIn()
+  if (!in) return json;
   char end[8] = {};
   in.seekg(-8, std::ios::end);
   in.read(end, sizeof end);
-  return in && std::string_view(end, sizeof end) == "\x89MCAP0\r\n";
+  json["complete"] = in && std::string_view(end, sizeof end) == "\x89MCAP0\r\n";
+  return json;
 }
 
 }  // namespace
@@ -47,11 +58,13 @@ Outcome RecordStart(Service& service, const Params& params, Client&) {
   try {
     fs::create_directories(directory);
     service.recorder =
-        std::make_shared<Recorder>(directory / file, rate_hz, service.journal(), service.run());
+        std::make_shared<Recorder>(directory / file, rate_hz, service.journal(), service.run(),
+                                   service.config().budgets.recording_bytes);
   } catch (const std::exception& e) {
     throw RpcException(RpcError{
         ErrorCode::kIo, e.what(), "another name, or regrasp record start without one", "file", {}});
   }
+  service.recording_end.clear();
   service.recorder->Add(service.newest());
   return {.result = {{"file", file},
                      {"path", (directory / file).string()},
@@ -61,6 +74,9 @@ Outcome RecordStart(Service& service, const Params& params, Client&) {
 }
 
 Outcome RecordStop(Service& service, const Params&, Client&) {
+  if (!service.recorder && !service.recording_end.empty())
+    throw RpcException(ErrorCode::kIo, std::exchange(service.recording_end, {}),
+                       "regrasp record list");
   if (!service.recorder)
     throw RpcException(ErrorCode::kBadState, "nothing is being recorded", "regrasp record start");
   Outcome outcome;
@@ -96,18 +112,13 @@ Outcome RecordStop(Service& service, const Params&, Client&) {
 }
 
 Outcome RecordList(Service& service, const Params&, Client&) {
-  std::vector<fs::path> paths;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(service.config().output_dir, ignored))
-    if (entry.path().extension() == ".mcap") paths.push_back(entry.path());
-  std::ranges::sort(paths);
-  Json list = Json::array();
-  for (const fs::path& path : paths)
-    list.push_back({{"file", path.filename().string()},
-                    {"bytes", fs::file_size(path, ignored)},
-                    {"complete", Complete(path)},
-                    {"recording", service.recorder && service.recorder->path() == path}});
-  return {.result = {{"recordings", std::move(list)}}};
+  const fs::path recording = service.recorder ? service.recorder->path() : fs::path();
+  return Later(service, [directory = service.config().output_dir, recording]() -> Json {
+    Json list = Json::array();
+    for (const fs::path& path : FilesIn(directory, {".mcap"}))
+      list.push_back(FileJson(path, recording));
+    return {{"recordings", std::move(list)}};
+  });
 }
 
 }  // namespace regrasp::handlers

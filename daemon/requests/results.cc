@@ -14,9 +14,11 @@
 namespace regrasp::handlers {
 namespace {
 
+const std::initializer_list<std::string_view> kSuffixes = {".png", ".jpg", ".jpeg", ".pdf", ".svg"};
+
 /// Everything the worker needs, so that it shares nothing with the I/O thread.
 struct Job {
-  std::string name, file;
+  std::string name, file;  ///< file: empty, a free one is chosen
   std::filesystem::path directory;
   std::vector<std::shared_ptr<const Frame>> frames;
   std::vector<Event> events;
@@ -25,6 +27,8 @@ struct Job {
   HandModel hand;
   std::shared_ptr<const ObjectModel> object;
   PlotOptions options;
+  std::size_t most = 0;  ///< pictures in the directory
+  bool overwrite = false;
   std::uintmax_t bytes = 0;
   std::string failure;
 };
@@ -65,9 +69,34 @@ void DrawInto(const Job& job, const std::string& path) {
     PlotQuality(history, job.events, job.hand, job.options, path);
 }
 
+/// Leaves room for one more: the oldest of those that nobody gave a name to go.
+void MakeRoom(const Job& job) {
+  std::vector<std::filesystem::path> pictures = FilesIn(job.directory, kSuffixes), ours;
+  std::erase_if(pictures,
+                [](const auto& file) { return file.filename().string().starts_with("incident-"); });
+  if (pictures.size() < job.most) return;
+  std::ranges::copy_if(pictures, std::back_inserter(ours), [](const auto& file) {
+    const std::string stem = file.stem().string();
+    const auto number = stem.find_last_of('-');
+    return number != std::string::npos &&
+           std::ranges::all_of(stem.substr(number + 1),
+                               [](unsigned char c) { return std::isdigit(c); });
+  });
+  const std::size_t excess = pictures.size() + 1 - job.most;
+  if (ours.size() < excess)
+    throw std::runtime_error(fmt::format("{} pictures are in {}, as many as max_pictures allows",
+                                         pictures.size(), job.directory.string()));
+  RemoveOldest(ours, ours.size() - excess);
+}
+
 void Draw(Job* job) {
   try {
+    MakeRoom(*job);
+    // Chosen here, by the only thread that draws.
+    if (job->file.empty())
+      job->file = FreeFile(job->directory, job->name, ".png").filename().string();
     job->bytes = WriteOutput(job->directory / job->file,
+                             job->overwrite ? Draft::Existing::kReplace : Draft::Existing::kKeep,
                              [job](const std::string& draft) { DrawInto(*job, draft); });
   } catch (const std::exception& e) {
     job->failure = e.what();
@@ -79,8 +108,21 @@ void Draw(Job* job) {
 Outcome Plot(Service& service, const Params& params, Client&) {
   const auto job = std::make_shared<Job>();
   job->name = params.String("name");
-  job->file = CheckedFileName(params.String("file", job->name + ".png"), "file",
-                              {".png", ".jpg", ".jpeg", ".pdf", ".svg"}, "quality.png");
+  job->directory = service.config().output_dir;
+  job->most = service.config().budgets.pictures;
+  job->overwrite = params.Bool("overwrite", false);
+  if (params.Has("file"))
+    job->file = CheckedFileName(params.String("file"), "file", kSuffixes, "quality.png");
+  else if (job->overwrite)
+    job->file = job->name + ".png";
+  std::error_code ignored;
+  if (!job->overwrite && !job->file.empty() &&
+      std::filesystem::exists(job->directory / job->file, ignored))
+    throw RpcException(RpcError{ErrorCode::kBadState,
+                                fmt::format("{} exists", job->file),
+                                "another name, or overwrite",
+                                "file",
+                                {}});
   job->options.last_s = params.Number("last_s", 0);
   job->options.width_mm = 1e3 * params.Number("size_m", 0);
   job->options.with_title = params.Bool("title", true);
@@ -112,7 +154,6 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->events = service.history().Events();
   job->hand = service.hand();
   job->object = service.accepted.object;
-  job->directory = service.config().output_dir;
   const std::int64_t tick = job->incident ? job->incident->event.tick : job->frames.back()->tick;
 
   Outcome outcome;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/output/output_file.h"
 #include "daemon/requests/handlers.h"
@@ -14,7 +15,14 @@ namespace {
 constexpr std::size_t kMaxBacklog =
     200;  // commands that wait for a tick; every parameter at once fits
 constexpr std::size_t kEventsKept = 1000;  // for `events`
+constexpr std::size_t kReserve = 1000;     // commands that end something are taken for longer
 constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
+
+/// What stands between the braces of an object.
+std::string Members(const Json& object) {
+  const std::string text = ToText(object);
+  return text.substr(1, text.size() - 2);
+}
 
 }  // namespace
 
@@ -28,6 +36,7 @@ Service::Service(ServiceConfig config, Host* host)
   accepted.seed = session.seed;
   accepted.object = std::make_shared<const ObjectModel>(session.model.object);
   accepted.paused = config_.control.paused;
+  RemoveAbandonedDrafts(config_.output_dir);
   Drain();
 }
 
@@ -46,7 +55,7 @@ Outcome Service::Call(const std::string& method, const JsonIn& params, Client* c
   return handler(*this, checked, *client);
 }
 
-std::vector<Event> Service::Drain() {
+std::vector<Sample> Service::Drain() {
   // The control thread pushes a frame before the events and jobs it shows, so those are taken
   // first.
   std::vector<JobRecord> ended;
@@ -66,7 +75,6 @@ std::vector<Event> Service::Drain() {
     if (recorder) recorder->Add(published);
     newest_ = published;
   }
-  std::vector<Event> events;
   for (const PublishedEvent& published : news) {
     const Event& event = published.event;
     if (published.run == newest_.run) {
@@ -76,12 +84,14 @@ std::vector<Event> Service::Drain() {
         RecordIncident(event);
     }
     if (recorder) recorder->Add(event, published.run);
-    events_.push_back(event);
-    if (events_.size() > kEventsKept) events_.pop_front();
-    events.push_back(event);
+    Json json = EventJson(event, hand(), dt());
+    if (json.contains("incident"))
+      json["incident"] = incident_file_.empty() ? Json() : Json(incident_file_);
+    Keep(std::move(json));
   }
   if (fresh) {
     ++frame_number_;
+    topics_.clear();
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - sample_.wall).count();
     if (elapsed > 0.25) {
@@ -93,7 +103,39 @@ std::vector<Event> Service::Drain() {
     if (newest_.step.id != 0) jobs_.Update(newest_.step);
   }
   for (const JobRecord& job : ended) jobs_.Update(job);
-  return events;
+  LookAfterRecorder();
+  return std::exchange(news_, {});
+}
+
+void Service::Keep(Json event) {
+  events_.push_back(ToText(event));
+  if (events_.size() > kEventsKept) events_.pop_front();
+  const double time_s = event["t_s"];
+  event.erase("t_s");
+  news_.push_back({time_s, Members(event)});
+}
+
+void Service::Tell(const char* kind, const std::string& text) {
+  spdlog::warn("{}", text);
+  Keep({{"tick", newest_.frame.tick},
+        {"t_s", newest_.frame.time_s},
+        {"kind", kind},
+        {"finger", nullptr},
+        {"value", 0.0},
+        {"text", text}});
+}
+
+void Service::LookAfterRecorder() {
+  if (!recorder) return;
+  const Recorder::Numbers numbers = recorder->numbers();
+  if (numbers.failure.empty() && !numbers.full) return;
+  const std::string file = recorder->path().filename().string();
+  recording_end = numbers.full ? fmt::format("{} has {} MB, as much as one run file may have", file,
+                                             numbers.bytes >> 20)
+                               : fmt::format("{}: {}", file, numbers.failure);
+  Tell(numbers.full ? "recording_full" : "recording_failed", recording_end);
+  const auto old = std::exchange(recorder, nullptr);
+  if (!host_->Background([old] { old->Finish(); }, [] {})) old->Finish();
 }
 
 void Service::TakeIn(const JournalNews& news) {
@@ -133,37 +175,38 @@ void Service::RecordIncident(const Event& event) {
   source.object = accepted.object->name;
   source.dt = dt();
   const auto incident = std::make_shared<const Incident>(MakeIncident(source, hand()));
-  const auto base = config_.output_dir / IncidentName(event.tick);
+  const auto record = FreeFile(config_.output_dir, IncidentName(event.tick), ".json");
+  const auto picture = std::filesystem::path(record).replace_extension(".png");
+  incident_file_ = record.filename().string();
   incident_ = incident;
-  incident_summary_ = {{"tick", event.tick},
-                       {"time_s", incident->time_s},
-                       {"seed", newest_.frame.seed},
-                       {"cause", incident->cause},
-                       {"record", base.string() + ".json"},
-                       {"picture", base.string() + ".png"}};
+  incident_summary_ = {{"tick", event.tick},         {"time_s", incident->time_s},
+                       {"seed", newest_.frame.seed}, {"cause", incident->cause},
+                       {"record", record.string()},  {"picture", picture.string()}};
   if (incident->job.id != 0) job_incidents_[incident->job.id] = incident_summary_;
   if (job_incidents_.size() > JobTable::kKept) job_incidents_.erase(job_incidents_.begin());
   spdlog::warn("{}", incident->cause);
   try {
-    WriteOutput(base.string() + ".json",
-                [&](const std::string& draft) { WriteIncident(*incident, hand(), draft); });
+    WriteWhole(record, IncidentText(*incident, hand()), Draft::Existing::kKeep, false);
   } catch (const std::exception& e) {
-    spdlog::error("no record of the incident: {}", e.what());
+    Tell("incident_not_recorded", fmt::format("no record of the incident: {}", e.what()));
+    incident_file_.clear();
   }
-  DrawIncidentLater(incident);
+  DrawIncidentLater(incident, picture);
 }
 
-void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident) {
-  const auto draw = [incident, hand = hand(), directory = config_.output_dir] {
-    const auto path = directory / (IncidentName(incident->event.tick) + ".png");
+void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident,
+                                std::filesystem::path picture) {
+  const auto draw = [incident, picture, hand = hand(), keep = config_.budgets.incidents] {
     try {
-      WriteOutput(path, [&](const std::string& draft) { DrawIncident(*incident, hand, 0, draft); });
+      WriteOutput(picture, Draft::Existing::kReplace,
+                  [&](const std::string& draft) { DrawIncident(*incident, hand, 0, draft); });
+      PruneIncidents(picture.parent_path(), keep);
     } catch (const std::exception& e) {
       spdlog::error("no picture of the incident: {}", e.what());
     }
   };
   if (host_->Background(draw, [] {})) return;
-  host_->After(kRetry_s, [this, incident] { DrawIncidentLater(incident); });
+  host_->After(kRetry_s, [this, incident, picture] { DrawIncidentLater(incident, picture); });
 }
 
 Json Service::JobAnswer(const JobRecord& job) const {
@@ -173,13 +216,21 @@ Json Service::JobAnswer(const JobRecord& job) const {
   return json;
 }
 
-Json Service::Topic(const std::string& topic) {
+const Sample& Service::Topic(const std::string& topic) {
+  Sample& sample = topics_[topic];
+  const bool changes_between_frames = topic == "status";
+  if (!sample.fields.empty() && !changes_between_frames) return sample;
   const Frame& frame = newest_.frame;
-  if (topic == "contacts") return ContactsJson(frame, hand(), accepted.parameters);
-  if (topic == "joints") return JointsJson(frame, hand());
-  if (topic == "quality") return QualityJson(frame, hand(), accepted.parameters);
-  if (topic == "truth") return TruthJson(frame, hand());
-  return StatusJson(*this);
+  sample.time_s = frame.time_s;
+  const auto json = [&]() -> Json {
+    if (topic == "contacts") return ContactsJson(frame, hand(), accepted.parameters);
+    if (topic == "joints") return JointsJson(frame, hand());
+    if (topic == "quality") return QualityJson(frame, hand(), accepted.parameters);
+    if (topic == "truth") return TruthJson(frame, hand());
+    return StatusJson(*this);
+  };
+  sample.fields = Members(json());
+  return sample;
 }
 
 double Service::real_time_factor() const { return newest_.advancing ? real_time_factor_ : 0.0; }
@@ -281,6 +332,7 @@ std::uint64_t Service::SetParameters(const std::vector<Command>& commands) {
 }
 
 std::uint64_t Service::Post(ControlRequest request) {
+  topics_.clear();  // what is accepted shows in them
   const std::uint64_t number = control_.Post(std::move(request));
   if (number == 0)
     throw RpcException(ErrorCode::kBusy, "the command queue is full", "try again in a moment");
@@ -289,6 +341,14 @@ std::uint64_t Service::Post(ControlRequest request) {
 
 std::uint64_t Service::PostCommand(Command command) {
   CheckNotRestoring();
+  const bool ends = command.type == CommandType::kStop || command.type == CommandType::kCancelJob ||
+                    command.type == CommandType::kRelease;
+  const std::size_t most = config_.budgets.commands + (ends ? kReserve : 0);
+  if (journal_.entries.size() + control_.backlog() >= most)
+    throw RpcException(
+        ErrorCode::kBusy,
+        fmt::format("the run has {} commands, as many as are kept of one", journal_.entries.size()),
+        "regrasp reset");
   CheckRoom(1);
   ControlRequest request;
   request.command = std::move(command);

@@ -26,17 +26,27 @@
 
 namespace regrasp {
 
-/// Called once with a result, or with an error.
+/// Called once with a result, or with an error; further calls do nothing. When its last copy goes
+/// without a call, the request is answered with an internal error.
 using Done = std::function<void(Json result, const RpcError* error)>;
 
-/// What a handler answers. Exactly one of: `result` now; `later` once the control thread has taken
-/// request `barrier`; or whatever `begin` passes to its Done at any later time.
+/// What a topic says of a moment, as text, made once for all who ask.
+struct Sample {
+  double time_s = 0;
+  std::string fields;  ///< the members of a JSON object, without its braces
+};
+
+/// What a handler answers. Exactly one of: `result` (or `text`, the same written out) now; `later`
+/// once the control thread has taken request `barrier`; or whatever `begin` passes to its Done at
+/// any later time.
 struct Outcome {
   Json result = {};
+  std::string text = {};
   std::uint64_t barrier = 0;  ///< hold the answer until ControlLoop::acknowledged() reaches this
   std::function<Json()> later = {};  ///< makes the result then; empty: `result`
   std::function<void(Done)> begin = {};
   bool overtaken = false;  ///< with `begin`: later requests of the connection go on meanwhile
+  std::function<void()> abandon = {};  ///< with `begin`: the client has gone, nobody waits any more
 };
 
 /// The connection a request came from, as handlers see it.
@@ -49,7 +59,15 @@ class Client {
   virtual Json Unsubscribe(std::int64_t sub) = 0;
 };
 
+/// What the daemon keeps at most; docs/promises.md says what happens at each limit.
+struct Budgets {
+  std::uint64_t recording_bytes = std::uint64_t{4} << 30;          ///< of one run file
+  std::size_t incidents = 100, pictures = 500, checkpoints = 200;  ///< files
+  std::size_t commands = 200'000;                                  ///< of one run
+};
+
 struct ServiceConfig {
+  Budgets budgets;
   ControlConfig control;
   std::vector<std::filesystem::path> search_path;  ///< for `reset {object}`
   LoadOptions load;                                ///< for `reset {object}`
@@ -83,8 +101,9 @@ class Service {
   Outcome Call(const std::string& method, const JsonIn& params, Client* client);
 
   /// Takes in what the control loop has published: newest frame, history, jobs (whose waiters are
-  /// called), events. Returns the new events. Call after ControlLoop::output() was notified.
-  std::vector<Event> Drain();
+  /// called), events. Returns the new events, as subscribers get them. Call after
+  /// ControlLoop::output() was notified.
+  std::vector<Sample> Drain();
 
   /// The last drop or fault since the start; null when there was none.
   const std::shared_ptr<const Incident>& incident() const { return incident_; }
@@ -93,8 +112,8 @@ class Service {
   /// The record of a job, with the incident that ended it.
   Json JobAnswer(const JobRecord& job) const;
 
-  /// The present value of a subscription topic other than events.
-  Json Topic(const std::string& topic);
+  /// The present value of a subscription topic other than events; valid until the next call.
+  const Sample& Topic(const std::string& topic);
   /// Changes whenever a new frame has come in.
   std::uint64_t frame_number() const { return frame_number_; }
 
@@ -104,7 +123,8 @@ class Service {
   JobTable& jobs() { return jobs_; }
   const Published& newest() const { return newest_; }
   const History& history() const { return history_; }
-  const std::deque<Event>& events() const { return events_; }
+  /// The last ones, oldest first, as `events` lists them: JSON objects.
+  const std::deque<std::string>& events() const { return events_; }
   const HandModel& hand() const { return config_.control.session.model.hand; }
   const ServiceConfig& config() const { return config_; }
   double dt() const { return config_.control.session.world.dt; }
@@ -120,6 +140,8 @@ class Service {
   std::uint64_t run() const { return run_; }  ///< its number
   /// The run file that is being written, or null.
   std::shared_ptr<Recorder> recorder;
+  /// Why the last one ended by itself, until somebody asked: it failed, or was full.
+  std::string recording_end;
   /// Asks for the tick and the state hash of this moment, after every command accepted before;
   /// `told` is called on the I/O thread when journal() is complete up to there.
   void Mark(std::function<void(const JournalNews&)> told);
@@ -161,9 +183,14 @@ class Service {
 
  private:
   void TakeIn(const JournalNews& news);
+  /// Tells of a recording that has ended by itself.
+  void LookAfterRecorder();
+  /// An event of the daemon's own.
+  void Tell(const char* kind, const std::string& text);
+  void Keep(Json event);
   /// Writes the record of what led to `event` at once and has its picture drawn.
   void RecordIncident(const Event& event);
-  void DrawIncidentLater(std::shared_ptr<const Incident> incident);
+  void DrawIncidentLater(std::shared_ptr<const Incident> incident, std::filesystem::path picture);
 
   ServiceConfig config_;
   Host* host_;
@@ -173,9 +200,13 @@ class Service {
   std::uint64_t run_ = 0;
   std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;
   History history_;
-  std::deque<Event> events_;
+  std::deque<std::string> events_;
+  std::vector<Sample> news_;  ///< events since the last Drain()
+  /// Of the newest frame; empty again with every frame and request to the control thread.
+  std::map<std::string, Sample, std::less<>> topics_;
   std::shared_ptr<const Incident> incident_;
   Json incident_summary_;
+  std::string incident_file_;  ///< the record of the last one; empty: it could not be written
   std::map<std::int64_t, Json> job_incidents_;  ///< summaries by job
   Published newest_;
   std::uint64_t frame_number_ = 0;

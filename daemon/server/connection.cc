@@ -1,34 +1,79 @@
 #include "daemon/server/connection.h"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <asio/buffer.hpp>
+#include <asio/post.hpp>
 #include <exception>
 
 #include "daemon/server/socket.h"
-#include "daemon/wire/frame_json.h"
 
 namespace regrasp {
 namespace {
 
-constexpr std::size_t kMaxSubscriptions = 32;
 constexpr std::size_t kMaxWaiting = 128;
-/// Streams drop samples while more than this is unsent; answers and events are still queued.
-constexpr std::size_t kStreamHighWater = 256 * 1024;
+/// Nothing more is asked of the daemon while so much is unsent, until half of it is written.
+constexpr std::size_t kOutputFull = 256 * 1024;
+constexpr int kLinesPerTurn = 32;  // handled before the others' turn
 
 }  // namespace
+
+/// What a handler answers with. Answers in its destructor if nobody has called it.
+class Connection::Reply {
+ public:
+  Reply(std::weak_ptr<Connection> connection, std::uint64_t number)
+      : connection_(std::move(connection)), number_(number) {}
+  ~Reply() {
+    if (called_) return;
+    const auto connection = connection_.lock();
+    if (!connection || connection->closed_) return;
+    try {  // not from here: whoever drops it may be in the middle of something
+      asio::post(connection->socket_.get_executor(), [connection, number = number_] {
+        const RpcError error{ErrorCode::kInternal,
+                             "the request was dropped",
+                             "report this as a defect of regraspd",
+                             {},
+                             {}};
+        connection->Resolve(number, {}, &error);
+      });
+    } catch (const std::exception&) {
+      connection->Close("no memory for an answer");
+    }
+  }
+  Reply(const Reply&) = delete;
+  Reply& operator=(const Reply&) = delete;
+  void operator()(Json result, const RpcError* error) {
+    if (std::exchange(called_, true)) return;
+    if (const auto connection = connection_.lock())
+      connection->Resolve(number_, std::move(result), error);
+  }
+
+ private:
+  std::weak_ptr<Connection> connection_;
+  std::uint64_t number_;
+  bool called_ = false;
+};
+
+void Connection::Guard(const std::function<void()>& step) {
+  if (closed_) return;
+  try {
+    step();
+  } catch (const std::exception& e) {
+    spdlog::error("a connection ends: {}", e.what());
+    Close("an error of this daemon");
+  }
+}
 
 void Connection::Start() { Read(); }
 
 void Connection::Read() {
-  if (reading_ || closed_ || end_of_input_ || (gate_ && !discarding_)) return;
+  if (reading_ || closed_ || end_of_input_ || (held() && !discarding_)) return;
   reading_ = true;
   socket_.async_read_some(asio::buffer(buffer_),
                           [self = shared_from_this()](std::error_code error, std::size_t size) {
                             self->reading_ = false;
-                            if (self->closed_) return;
-                            if (error)
-                              self->OnEndOfInput();
-                            else
-                              self->OnRead(size);
+                            self->Guard([&] { error ? self->OnEndOfInput() : self->OnRead(size); });
                           });
 }
 
@@ -52,7 +97,7 @@ void Connection::ProcessInput() {
   if (processing_) return;
   processing_ = true;
   std::size_t begin = 0;
-  while (!gate_ && !closed_ && !discarding_) {
+  for (int lines = 0; !held() && !closed_ && !discarding_; ++lines) {
     std::size_t end = input_.find('\n', std::max(begin, scanned_));
     if (end == std::string::npos) {
       scanned_ = input_.size();
@@ -63,6 +108,14 @@ void Connection::ProcessInput() {
       else
         break;
     }
+    if (lines == kLinesPerTurn) {
+      turn_over_ = true;
+      asio::post(socket_.get_executor(), [self = shared_from_this()] {
+        self->turn_over_ = false;
+        self->Guard([&] { self->ResumeInput(); });
+      });
+      break;
+    }
     HandleLine(std::string_view(input_).substr(begin, end - begin));
     begin = std::min(end + 1, input_.size());
     scanned_ = begin;
@@ -70,6 +123,12 @@ void Connection::ProcessInput() {
   input_.erase(0, begin);
   scanned_ -= std::min(scanned_, begin);
   processing_ = false;
+}
+
+void Connection::ResumeInput() {
+  ProcessInput();
+  Read();
+  MaybeClose();
 }
 
 void Connection::HandleLine(std::string_view text) {
@@ -93,45 +152,80 @@ void Connection::HandleRequest(const RpcRequest& request, const std::shared_ptr<
                                std::size_t index) {
   Slot& slot = line->slots[index];
   slot.id = request.id;
-  slot.answered = request.id.has_value();
+  slot.wanted = request.id.has_value();
   if (request.error) {
-    if (request.error->code != ErrorCode::kInvalidParams) slot.answered = true;
-    slot.message = ErrorMessage(request.id, *request.error);
-    return;
+    if (request.error->code != ErrorCode::kInvalidParams) slot.wanted = true;
+    return Fail(line.get(), &slot, *request.error);
   }
   try {
     Outcome outcome = owner_->service().Call(request.method, request.params, this);
-    if (!outcome.begin) {
-      line->barrier = std::max(line->barrier, outcome.barrier);
-      slot.later = std::move(outcome.later);
-      slot.message = ResultMessage(request.id, std::move(outcome.result));
-      return;
-    }
-    const bool overtaken = outcome.overtaken;
-    if (overtaken && waiting_ >= kMaxWaiting)
-      throw RpcException(ErrorCode::kBusy, "too many waiting requests on this connection",
-                         "open another connection");
-    ++(overtaken ? line->open_overtaken : line->open);
-    if (overtaken) ++waiting_;
-    outcome.begin(
-        [weak = weak_from_this(), line, index, overtaken](Json result, const RpcError* error) {
-          Slot& done = line->slots[index];
-          done.message =
-              error ? ErrorMessage(done.id, *error) : ResultMessage(done.id, std::move(result));
-          --(overtaken ? line->open_overtaken : line->open);
-          const auto self = weak.lock();
-          if (!self || self->closed_) return;
-          if (overtaken) --self->waiting_;
-          self->Advance(line);
-          self->MaybeClose();
-        });
+    if (outcome.begin) return Begin(std::move(outcome), line, index);
+    line->barrier = std::max(line->barrier, outcome.barrier);
+    slot.later = std::move(outcome.later);
+    if (!slot.later)
+      Answer(line.get(), &slot,
+             outcome.text.empty() ? ResultText(slot.id, outcome.result.dump())
+                                  : ResultText(slot.id, outcome.text));
   } catch (const RpcException& e) {
-    slot.message = ErrorMessage(request.id, e.error());
+    Fail(line.get(), &slot, e.error());
   } catch (const std::exception& e) {
-    slot.message = ErrorMessage(
-        request.id,
-        {ErrorCode::kInternal, e.what(), "report this as a defect of regraspd", {}, {}});
+    Fail(line.get(), &slot, InternalError(e));
   }
+}
+
+/// From here on the answer is Resolve()'s alone, whatever `begin` does.
+void Connection::Begin(Outcome outcome, const std::shared_ptr<Line>& line, std::size_t index) {
+  if (outcome.overtaken && waiting_ >= kMaxWaiting)
+    throw RpcException(ErrorCode::kBusy, "too many waiting requests on this connection",
+                       "open another connection");
+  const std::uint64_t number = ++last_open_;
+  const auto reply = std::make_shared<Reply>(weak_from_this(), number);
+  open_.emplace(number, Open{line, index, outcome.overtaken, std::move(outcome.abandon)});
+  ++(outcome.overtaken ? line->open_overtaken : line->open);
+  if (outcome.overtaken) ++waiting_;
+  try {
+    outcome.begin(
+        [reply](Json result, const RpcError* error) { (*reply)(std::move(result), error); });
+  } catch (const RpcException& e) {
+    (*reply)({}, &e.error());
+  } catch (const std::exception& e) {
+    const RpcError error = InternalError(e);
+    (*reply)({}, &error);
+  }
+}
+
+void Connection::Resolve(std::uint64_t number, Json result, const RpcError* error) {
+  Guard([&] {
+    const auto found = open_.extract(number);
+    if (!found) return;
+    const Open& open = found.mapped();
+    Slot& slot = open.line->slots[open.index];
+    --(open.overtaken ? open.line->open_overtaken : open.line->open);
+    if (open.overtaken) --waiting_;
+    if (error)
+      Fail(open.line.get(), &slot, *error);
+    else
+      Answer(open.line.get(), &slot, ResultText(slot.id, ToText(result)));
+    Advance(open.line);
+    MaybeClose();
+  });
+}
+
+void Connection::Fail(Line* line, Slot* slot, const RpcError& error) {
+  Answer(line, slot, ToText(ErrorMessage(slot->id, error)));
+}
+
+void Connection::Answer(Line* line, Slot* slot, std::string message) {
+  if (!slot->wanted) return;
+  if (line->bytes + message.size() > kMaxAnswerBytes)
+    message = ToText(ErrorMessage(
+        slot->id, {ErrorCode::kTooLarge,
+                   fmt::format("an answer line of more than {} bytes", kMaxAnswerBytes),
+                   line->batch ? "send fewer requests in a batch" : "ask for less at a time",
+                   {},
+                   {}}));
+  line->bytes += message.size();
+  slot->message = std::move(message);
 }
 
 void Connection::Advance(const std::shared_ptr<Line>& line) {
@@ -142,42 +236,46 @@ void Connection::Advance(const std::shared_ptr<Line>& line) {
       return;
     }
     line->released = true;
-    for (Slot& slot : line->slots)
-      if (slot.later) slot.message = ResultMessage(slot.id, slot.later());
+    for (Slot& slot : line->slots) {
+      if (!slot.later) continue;
+      try {
+        Answer(line.get(), &slot, ResultText(slot.id, ToText(slot.later())));
+      } catch (const std::exception& e) {
+        Fail(line.get(), &slot, InternalError(e));
+      }
+    }
   }
   const bool resume = gate_ == line;
   if (resume) gate_.reset();
   if (line->open_overtaken == 0) SendAnswers(*line);
-  if (resume) {
-    ProcessInput();
-    Read();
-    MaybeClose();
-  }
+  if (resume) ResumeInput();
 }
 
 void Connection::OnAcknowledged() {
-  if (gate_) Advance(std::shared_ptr<Line>(gate_));
+  Guard([&] {
+    if (gate_) Advance(std::shared_ptr<Line>(gate_));
+  });
 }
 
 void Connection::SendAnswers(const Line& line) {
-  Json answers = Json::array();
+  std::string text;
   for (const Slot& slot : line.slots) {
-    if (!slot.answered) continue;
-    if (line.batch)
-      answers.push_back(slot.message);
-    else
-      Send(ToLine(slot.message));
+    if (!slot.wanted) continue;
+    text += text.empty() ? (line.batch ? "[" : "") : ",";
+    text += slot.message;
   }
-  if (!answers.empty()) Send(ToLine(answers));
+  if (!text.empty()) Send(text + (line.batch ? "]\n" : "\n"));
   StartSubscriptions();
 }
 
-void Connection::Send(std::string line) {
+void Connection::Send(std::string_view line) {
   if (closed_) return;
-  if (unsent() + line.size() > owner_->limits().max_output_bytes)
-    return Close("evicted: it does not read its answers");
-  if (unsent() == 0) progress_ = std::chrono::steady_clock::now();
+  if (unsent() == 0) {
+    progress_ = std::chrono::steady_clock::now();
+    event_bytes_ = 0;
+  }
   pending_ += line;
+  output_full_ = output_full_ || unsent() > kOutputFull;
   Write();
 }
 
@@ -187,18 +285,26 @@ void Connection::Write() {
     writing_.clear();
     written_ = 0;
     writing_.swap(pending_);
+    if (writing_.capacity() > 2 * kOutputFull && writing_.empty()) writing_.shrink_to_fit();
   }
   if (writing_.empty()) return MaybeClose();
   write_active_ = true;
   socket_.async_write_some(asio::buffer(writing_.data() + written_, writing_.size() - written_),
                            [self = shared_from_this()](std::error_code error, std::size_t size) {
                              self->write_active_ = false;
-                             if (self->closed_) return;
-                             if (error) return self->Close("disconnected");
-                             self->written_ += size;
-                             self->progress_ = std::chrono::steady_clock::now();
-                             self->Write();
+                             self->Guard([&] { self->OnWritten(error, size); });
                            });
+}
+
+void Connection::OnWritten(std::error_code error, std::size_t size) {
+  if (error) return Close("disconnected");
+  written_ += size;
+  progress_ = std::chrono::steady_clock::now();
+  event_bytes_ = std::min(event_bytes_, unsent());
+  Write();
+  if (!output_full_ || unsent() > kOutputFull / 2) return;
+  output_full_ = false;
+  ResumeInput();
 }
 
 void Connection::CloseWhenFlushed() {
@@ -215,7 +321,7 @@ void Connection::MaybeClose() {
     return;
   }
   if (closing_) return Close("closed");
-  if (end_of_input_ && !gate_ && waiting_ == 0 && subscriptions_.empty()) Close("disconnected");
+  if (end_of_input_ && !held() && waiting_ == 0 && subscriptions_.empty()) Close("disconnected");
 }
 
 void Connection::CheckHealth(std::chrono::steady_clock::time_point now) {
@@ -231,81 +337,10 @@ void Connection::Close(const std::string& why) {
   for (auto& [id, subscription] : subscriptions_) subscription.timer.cancel();
   std::error_code ignored;
   socket_.close(ignored);
+  gate_.reset();
+  for (auto& [number, open] : std::exchange(open_, {}))
+    if (open.abandon) open.abandon();
   owner_->Closed(this, why);
-}
-
-std::int64_t Connection::Subscribe(const std::string& topic, double rate_hz) {
-  if (subscriptions_.size() >= kMaxSubscriptions)
-    throw RpcException(ErrorCode::kBusy, "too many subscriptions on this connection",
-                       "unsubscribe from one, or open another connection");
-  const auto period = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(1.0 / rate_hz));
-  subscriptions_.emplace(++last_sub_,
-                         Subscription{topic, period, asio::steady_timer(socket_.get_executor())});
-  return last_sub_;
-}
-
-Json Connection::Unsubscribe(std::int64_t sub) {
-  const auto it = subscriptions_.find(sub);
-  if (it == subscriptions_.end()) return {};
-  Json last = {{"sub", sub}, {"seq", it->second.seq}, {"dropped", it->second.dropped}};
-  it->second.timer.cancel();
-  subscriptions_.erase(it);
-  return last;
-}
-
-void Connection::StartSubscriptions() {
-  for (auto& [id, subscription] : subscriptions_) {
-    if (subscription.started) continue;
-    subscription.started = true;
-    if (subscription.topic == "events") continue;
-    subscription.timer.expires_at(std::chrono::steady_clock::now());
-    Tick(id);
-  }
-}
-
-void Connection::Tick(std::int64_t sub) {
-  const auto it = subscriptions_.find(sub);
-  if (it == subscriptions_.end() || closed_) return;
-  it->second.timer.async_wait([self = shared_from_this(), sub](std::error_code error) {
-    const auto found = self->subscriptions_.find(sub);
-    if (error || self->closed_ || found == self->subscriptions_.end()) return;
-    Subscription& subscription = found->second;
-    // Catches up after a stall by skipping, not by a burst.
-    subscription.timer.expires_at(std::max(subscription.timer.expiry() + subscription.period,
-                                           std::chrono::steady_clock::now()));
-    Service& service = self->owner_->service();
-    // Where time stands still the same frame is told again: who counts samples does not hang.
-    if (service.frame_number() != subscription.last_frame || !service.newest().advancing) {
-      subscription.last_frame = service.frame_number();
-      if (self->unsent() > kStreamHighWater)
-        ++subscription.dropped;
-      else
-        self->SendSample(sub, &subscription, service.Topic(subscription.topic));
-    }
-    self->Tick(sub);
-  });
-}
-
-void Connection::OnEvent(const Event& event) {
-  for (auto& [id, subscription] : subscriptions_) {
-    if (closed_) return;
-    if (subscription.topic != "events" || !subscription.started) continue;
-    Service& service = owner_->service();
-    SendSample(id, &subscription, EventJson(event, service.hand(), service.dt()));
-  }
-}
-
-void Connection::SendSample(std::int64_t sub, Subscription* subscription, Json fields) {
-  const double t_s =
-      fields.contains("t_s") ? fields["t_s"].get<double>() : fields.value("time_s", 0.0);
-  Json params = {{"sub", sub},
-                 {"topic", subscription->topic},
-                 {"seq", ++subscription->seq},
-                 {"dropped", subscription->dropped},
-                 {"t_s", t_s}};
-  params.update(fields);
-  Send(ToLine(NotificationMessage("event", std::move(params))));
 }
 
 }  // namespace regrasp

@@ -15,7 +15,7 @@
 namespace regrasp {
 namespace {
 
-constexpr std::size_t kMaxBackground = 8;
+constexpr std::size_t kMaxBackground = 256;
 
 void RefuseClient(Connection::Socket socket, const RpcError& error) {
   const std::string line = ToLine(ErrorMessage({}, error));
@@ -50,7 +50,8 @@ void Server::Run(bool signals, std::function<void()> reload) {
   Accept();
   manager_.Tell("READY=1\nSTATUS=" + StatusLine());
   FeedWatchdog();
-  io_.run();
+  // A handler that throws past its guard has lost what it was about; the others go on.
+  while (!io_.stopped()) Guard("a step of the server", [this] { io_.run(); });
   // Connections hold their own sockets and timers alive through handlers: let go of all before io_
   // goes.
   for (const auto& connection : Connections()) connection->CloseWhenFlushed();
@@ -119,11 +120,13 @@ void Server::Accept() {
   acceptor_.async_accept([this](std::error_code error, Connection::Socket socket) {
     if (stopping_) return;
     if (!error) {
-      Admit(std::move(socket));
+      accept_failing_ = false;
+      Guard("a new client", [&] { Admit(std::move(socket)); });
       return Accept();
     }
     // Out of descriptors, most likely: try again when some may have been closed.
-    spdlog::warn("cannot accept a client: {}", error.message());
+    if (!std::exchange(accept_failing_, true))
+      spdlog::warn("cannot accept clients: {}", error.message());
     accept_retry_.expires_after(std::chrono::milliseconds(100));
     accept_retry_.async_wait([this](std::error_code cancelled) {
       if (!cancelled && !stopping_) Accept();
@@ -168,25 +171,34 @@ std::vector<std::shared_ptr<Connection>> Server::Connections() const {
   return all;
 }
 
+void Server::Guard(const char* what, const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const std::exception& e) {
+    spdlog::error("{}: {}", what, e.what());
+  }
+}
+
 void Server::WatchControl() {
   control_output_.async_wait(asio::posix::stream_descriptor::wait_read,
                              [this](std::error_code error) {
                                if (error) return;
-                               ControlLoop& control = service_.control();
-                               control.output().Clear();
-                               // In this order: what is acknowledged is shown by the frames taken
-                               // in after it.
-                               const std::uint64_t acknowledged = control.acknowledged();
-                               const std::vector<Event> events = service_.Drain();
-                               acknowledged_ = acknowledged;
-                               const auto connections = Connections();
-                               for (const auto& connection : connections)
-                                 connection->OnAcknowledged();
-                               for (const Event& event : events)
-                                 for (const auto& connection : connections)
-                                   connection->OnEvent(event);
+                               Guard("news of the simulation", [this] { TakeFromControl(); });
                                WatchControl();
                              });
+}
+
+void Server::TakeFromControl() {
+  ControlLoop& control = service_.control();
+  control.output().Clear();
+  // In this order: what is acknowledged is shown by the frames taken in after it.
+  const std::uint64_t acknowledged = control.acknowledged();
+  const std::vector<Sample> events = service_.Drain();
+  acknowledged_ = acknowledged;
+  const auto connections = Connections();
+  for (const auto& connection : connections) connection->OnAcknowledged();
+  for (const Sample& event : events)
+    for (const auto& connection : connections) connection->OnEvent(event);
 }
 
 void Server::WatchHealth() {
@@ -194,8 +206,10 @@ void Server::WatchHealth() {
       std::min<std::chrono::milliseconds>(std::chrono::seconds(1), limits_.max_stall / 4));
   health_.async_wait([this](std::error_code error) {
     if (error) return;
-    const auto now = std::chrono::steady_clock::now();
-    for (const auto& connection : Connections()) connection->CheckHealth(now);
+    Guard("looking after the clients", [this] {
+      const auto now = std::chrono::steady_clock::now();
+      for (const auto& connection : Connections()) connection->CheckHealth(now);
+    });
     WatchHealth();
   });
 }
@@ -208,7 +222,7 @@ std::uint64_t Server::After(double seconds, std::function<void()> action) {
   timer.async_wait([this, key, action = std::move(action)](std::error_code error) {
     // Cancelled after it had expired: the handler was already queued and comes without an error.
     if (error || timers_.erase(key) == 0) return;
-    action();
+    Guard("a timer", action);
   });
   return key;
 }
@@ -219,10 +233,10 @@ bool Server::Background(std::function<void()> work, std::function<void()> finish
   if (background_ >= kMaxBackground) return false;
   ++background_;
   asio::post(worker_, [this, work = std::move(work), finish = std::move(finish)] {
-    work();
+    Guard("the worker", work);
     asio::post(io_, [this, finish] {
       --background_;
-      finish();
+      Guard("the end of the worker's task", finish);
     });
   });
   return true;

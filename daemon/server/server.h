@@ -56,11 +56,15 @@ class Server final : public ConnectionOwner, public Host {
   void Accept();
   void Admit(Connection::Socket socket);
   void WatchControl();
+  void TakeFromControl();
   void WatchHealth();
   void WatchSignals(const std::function<void()>& reload);
   void FeedWatchdog();
   std::string StatusLine() const;
   void Finish();
+  /// Runs one step of the server; what it throws (no memory is left, most likely) is logged, and
+  /// the server goes on.
+  void Guard(const char* what, const std::function<void()>& step);
   std::vector<std::shared_ptr<Connection>> Connections() const;
 
   Limits limits_;
@@ -74,7 +78,7 @@ class Server final : public ConnectionOwner, public Host {
   std::map<std::uint64_t, asio::steady_timer> timers_;
   std::uint64_t last_timer_ = 0;
   std::size_t background_ = 0;
-  bool stopping_ = false;
+  bool stopping_ = false, accept_failing_ = false;
   std::uint64_t acknowledged_ = 0;
   std::uint64_t pulse_ = 0;  ///< of the control loop, when the watchdog was last fed
   ServiceManager manager_;

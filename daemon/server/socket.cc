@@ -11,6 +11,7 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -84,10 +85,17 @@ void ListenSocket::Lock() {
   lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock_ < 0) Fail(fmt::format("cannot open {}", lock), errno);
   if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK)
-      throw SocketError(ExitCode::kRefused, fmt::format("another daemon serves {}", path_));
-    Fail(fmt::format("cannot lock {}", lock), errno);
+    if (errno != EWOULDBLOCK) Fail(fmt::format("cannot lock {}", lock), errno);
+    char holder[16] = {};
+    const ssize_t size = ::pread(lock_, holder, sizeof holder - 1, 0);
+    const long pid = size > 0 ? std::strtol(holder, nullptr, 10) : 0;
+    throw SocketError(ExitCode::kRefused,
+                      fmt::format("another daemon serves {}{}", path_,
+                                  pid > 0 ? fmt::format(" (process {})", pid) : ""));
   }
+  // For the next one to name us; nothing depends on it.
+  const std::string pid = fmt::format("{}\n", ::getpid());
+  if (::ftruncate(lock_, 0) != 0 || ::pwrite(lock_, pid.data(), pid.size(), 0) < 0) return;
 }
 
 void ListenSocket::RemoveStale() {

@@ -149,6 +149,9 @@ RpcLine ParseLine(std::string_view line) {
     return refuse(ErrorCode::kTooLarge,
                   fmt::format("request line of more than {} bytes", kMaxRequestBytes),
                   "send less per line");
+  if (const auto nul = line.find('\0'); nul != std::string_view::npos)
+    return refuse(ErrorCode::kParse, fmt::format("a NUL byte at position {}", nul),
+                  "send one JSON object per line, in UTF-8");
   if (const int depth = Depth(line); depth > kMaxRequestDepth)
     return refuse(ErrorCode::kInvalidRequest,
                   fmt::format("nested {} levels deep; at most {}", depth, kMaxRequestDepth),
@@ -191,8 +194,14 @@ Json IdJson(const std::optional<RequestId>& id) {
 
 }  // namespace
 
-Json ResultMessage(const std::optional<RequestId>& id, Json result) {
-  return {{"jsonrpc", "2.0"}, {"id", IdJson(id)}, {"result", std::move(result)}};
+RpcError InternalError(const std::exception& e) {
+  return {ErrorCode::kInternal, e.what(), "report this as a defect of regraspd", {}, {}};
+}
+
+std::string ResultText(const std::optional<RequestId>& id, std::string_view result) {
+  std::string text = R"({"jsonrpc":"2.0","id":)" + ToText(IdJson(id)) + R"(,"result":)";
+  text += result;
+  return text += '}';
 }
 
 Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error) {
@@ -210,8 +219,10 @@ Json NotificationMessage(std::string_view method, Json params) {
   return {{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}};
 }
 
-std::string ToLine(const Json& message) {
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+std::string ToText(const Json& message) {
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
+
+std::string ToLine(const Json& message) { return ToText(message) + '\n'; }
 
 }  // namespace regrasp

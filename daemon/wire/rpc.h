@@ -15,6 +15,9 @@
 
 namespace regrasp {
 
+/// Of one line of answers; what would make it longer is answered with an error.
+inline constexpr std::size_t kMaxAnswerBytes = 16 * 1024 * 1024;
+
 /// An error as it goes over the wire (rule 7).
 struct RpcError {
   ErrorCode code = ErrorCode::kInternal;
@@ -58,13 +61,19 @@ struct RpcLine {
 /// and number ranges are checked here, the first two before any document is built. Never throws.
 RpcLine ParseLine(std::string_view line);
 
-/// {"jsonrpc":"2.0","id":id,"result":result}; `id` empty writes null.
-Json ResultMessage(const std::optional<RequestId>& id, Json result);
+/// What an exception that nobody foresaw is answered with.
+RpcError InternalError(const std::exception& e);
+
+/// {"jsonrpc":"2.0","id":id,"result":result} around a result that is JSON text already; `id` empty
+/// writes null.
+std::string ResultText(const std::optional<RequestId>& id, std::string_view result);
 Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error);
 /// A notification.
 Json NotificationMessage(std::string_view method, Json params);
 
-/// One line, '\n' included. Text that is not UTF-8 is replaced, never thrown about.
+/// Text that is not UTF-8 is replaced, never thrown about.
+std::string ToText(const Json& message);
+/// One line, '\n' included.
 std::string ToLine(const Json& message);
 
 }  // namespace regrasp

@@ -71,15 +71,69 @@ TEST_F(Streams, AreLimitedPerConnection) {
 }
 
 TEST_F(Streams, AClientThatDoesNotReadIsEvictedAndTheOthersLiveOn) {
+  limits.max_stall = std::chrono::milliseconds(200);
   Start();
   const auto deaf = Connect(), other = Connect();
-  // 15 KiB of answer for 50 bytes of question: past the kernel's buffer and the daemon's 1 MiB.
+  // 15 KiB of answer for 50 bytes of question: past the kernel's buffer and the daemon's.
   const std::string question = R"({"jsonrpc":"2.0","id":1,"method":"describe"})"
                                "\n";
   bool gone = false;
   for (int i = 0; i < 10'000 && !gone; ++i) gone = !deaf->Send(question);
   EXPECT_TRUE(gone);
   EXPECT_EQ(other->Error("status"), 0);
+}
+
+/// Makes an event.
+void Push(TestClient* client) {
+  client->Result("push", {{"force_n", {0, 0, 0.001}}, {"duration_s", 0.001}});
+}
+
+TEST_F(Streams, AClientThatLeavesEventsUnreadIsEvicted) {
+  limits.max_output_bytes = 64 * 1024;
+  config.paused = false;
+  Start();
+  const auto deaf = Connect(), other = Connect();
+  deaf->Result("subscribe", {{"topic", "events"}});
+  // The kernel takes some 200 KiB, an event has 150 bytes.
+  int events = 0;
+  for (; events < 20'000 && other->Result("status")["clients"] == 2; ++events) Push(other.get());
+  EXPECT_LT(events, 20'000);
+  EXPECT_TRUE(deaf->ReachesEnd());
+}
+
+TEST_F(Streams, AClientThatReadsLateGetsEveryAnswerInOrder) {
+  Start();
+  const auto client = Connect(), other = Connect();
+  // 4 MiB of answers: the daemon stops listening, so the questions go out from a thread.
+  constexpr int kCount = 300;
+  std::thread asking([&] {
+    for (int i = 0; i < kCount; ++i)
+      client->Send(R"({"jsonrpc":"2.0","id":)" + std::to_string(i) +
+                   R"(,"method":"describe"})"
+                   "\n");
+  });
+  EXPECT_EQ(other->Error("status"), 0);
+  for (int i = 0; i < kCount; ++i) ASSERT_EQ(client->Receive()["id"], i);
+  asking.join();
+  EXPECT_EQ(client->Error("status"), 0);
+}
+
+TEST_F(Streams, ABatchOfLongAnswersIsAnsweredWhole) {
+  config.paused = false;
+  Start();
+  const auto client = Connect();
+  for (int i = 0; i < 1000; ++i) Push(client.get());
+  Json batch = Json::array();
+  for (int i = 0; i < 32; ++i)
+    batch.push_back(
+        {{"jsonrpc", "2.0"}, {"id", i}, {"method", "events"}, {"params", {{"count", 1000}}}});
+  client->Send(batch.dump() + "\n");
+  const Json answers = client->Receive();
+  ASSERT_EQ(answers.size(), 32u);
+  for (int i = 0; i < 32; ++i) {
+    EXPECT_EQ(answers[i]["id"], i);
+    EXPECT_EQ(answers[i]["result"]["events"].size(), 1000u);
+  }
 }
 
 TEST_F(Streams, AClientWithoutProgressIsEvicted) {

@@ -20,7 +20,7 @@ class Methods:
 
     def checkpoint_restore(self, name: str, seed: int | None = None, reexecute: bool | None = None) -> Job:
         """Go on from a checkpoint: identically, or with another seed.
-        name: letters, digits, - _ . ; at most 64, no dot first.
+        name: letters, digits, - _ . ; at most 64, neither . nor - first.
         seed: branch: sensor noise and later random choices follow this seed; 0 to 9007199254740992; left out: go on
             identically.
         reexecute: execute the commands again from tick 0, rather than load the state; left out: false.
@@ -30,7 +30,7 @@ class Methods:
 
     def checkpoint_save(self, name: str) -> dict:
         """Keep this moment, to go on from it later.
-        name: letters, digits, - _ . ; at most 64, no dot first.
+        name: letters, digits, - _ . ; at most 64, neither . nor - first.
         Returns name, tick, time_s, state, state_hash, commands, path.
         """
         return self._ask("checkpoint.save", {"name": name})
@@ -195,18 +195,19 @@ class Methods:
         """
         return self._ask("pause", {})
 
-    def plot(self, name: str, file: str | None = None, last_s: float | None = None, size_m: float | None = None, title: bool | None = None) -> dict:
+    def plot(self, name: str, file: str | None = None, overwrite: bool | None = None, last_s: float | None = None, size_m: float | None = None, title: bool | None = None) -> dict:
         """Draw a picture into the output directory.
         name: the picture; one of comparison, contacts, gait, incident, quality, scene.
         file: file name (not a path), written in the daemon's output directory; its suffix decides: .png, .jpg,
-            .pdf, .svg; left out: NAME.png.
+            .pdf, .svg; left out: NAME.png, or NAME-2.png ... where that is there.
+        overwrite: replace a picture of this name; otherwise that is an error; left out: false.
         last_s: only the last so many seconds [s]; 0.1 to 600; left out: everything kept.
         size_m: printed width; from 165 mm on text is at least 7 pt high on paper [m]; 0.05 to 1; left out: for a
             screen.
         title: whether the picture has its title and its line of facts; left out: true.
         Returns file (name), path, bytes, tick.
         """
-        return self._ask("plot", {"name": name, "file": file, "last_s": last_s, "size_m": size_m, "title": title})
+        return self._ask("plot", {"name": name, "file": file, "overwrite": overwrite, "last_s": last_s, "size_m": size_m, "title": title})
 
     def push(self, force_n: list[float], duration_s: float | None = None) -> dict:
         """Push the object: a disturbance.

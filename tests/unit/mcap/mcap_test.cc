@@ -2,12 +2,14 @@
 // the public @mcap/core.
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "core/mcap/mcap_format.h"
 #include "core/mcap/mcap_reader.h"
 
 namespace regrasp {
@@ -78,15 +80,82 @@ TEST_F(Mcap, CutOffAnywhereKeepsEveryFlushedMessage) {
   }
 }
 
-TEST_F(Mcap, RefusesADamagedChunkAndWhatIsNoMcap) {
+TEST_F(Mcap, ReadsTheGoodChunksAndNamesTheBadOne) {
   WriteSome();
   std::string bytes = Bytes();
-  bytes[bytes.find("{\"i\":5}") + 5] = '6';
+  const std::size_t at = bytes.find("{\"i\":15}");
+  bytes[at + 5] = '6';
   Replace(bytes);
-  EXPECT_THROW(ReadMcap(path, [](const McapMessage&) {}), McapError);
+  std::vector<std::uint64_t> times;
+  const McapSummary summary =
+      ReadMcap(path, [&](const McapMessage& message) { times.push_back(message.time); });
+  EXPECT_EQ(times.size(), 20u);
+  EXPECT_EQ(times[10], 20u);
+  EXPECT_TRUE(summary.complete);
+  ASSERT_EQ(summary.lost.size(), 1u);
+  const McapLoss& loss = summary.lost[0];
+  EXPECT_LT(loss.offset, at);
+  EXPECT_GT(loss.offset + loss.bytes, at);
+  EXPECT_EQ(loss.start, 10u);
+  EXPECT_EQ(loss.end, 19u);
+  EXPECT_NE(LossText(loss).find("checksum"), std::string::npos);
+}
+
+TEST_F(Mcap, OneTurnedBitAnywhereCostsAtMostOneChunk) {
+  WriteSome();
+  const std::string whole = Bytes();
+  const std::size_t behind_summary = whole.size() - 8 - 29;  // the footer
+  for (std::size_t at = 8; at < whole.size(); ++at) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ (1 << (at % 8)));
+    Replace(bytes);
+    std::uint64_t found = 0;
+    try {
+      const McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
+        ++found;
+        EXPECT_LT(message.time, 30u);
+      });
+      EXPECT_GE(found, 20u) << at;
+      // What is missing is told, wherever a whole file ends as one.
+      if (found < 30 && at < behind_summary) {
+        EXPECT_FALSE(summary.lost.empty()) << at;
+      }
+    } catch (const McapError& e) {
+      FAIL() << at << ": " << e.what();
+    }
+  }
+}
+
+TEST_F(Mcap, ChunksInChunksAreDamage) {
+  std::string chunks;
+  for (int depth = 0; depth < 3; ++depth) {
+    mcap::Bytes content, record;
+    content.Add(std::uint64_t{0});
+    content.Add(std::uint64_t{0});
+    content.Add(static_cast<std::uint64_t>(chunks.size()));
+    content.Add(std::uint32_t{0});  // no checksum
+    content.AddText("");
+    content.Add(static_cast<std::uint64_t>(chunks.size()));
+    content.data += chunks;
+    record.AddRecord(mcap::kChunk, content.data);
+    chunks = record.data;
+  }
+  Replace(std::string(mcap::kMagic.begin(), mcap::kMagic.end()) + chunks);
+  const McapSummary summary = ReadMcap(path, [](const McapMessage&) {});
+  EXPECT_EQ(summary.messages, 0u);
+  EXPECT_EQ(summary.lost.size(), 1u);
+}
+
+TEST_F(Mcap, RefusesWhatIsNoMcap) {
   Replace("something else");
   EXPECT_THROW(ReadMcap(path, [](const McapMessage&) {}), McapError);
+  Replace("");
+  EXPECT_THROW(ReadMcap(path, [](const McapMessage&) {}), McapError);
   EXPECT_THROW(ReadMcap(directory / "none", [](const McapMessage&) {}), McapError);
+  EXPECT_THROW(ReadMcap(directory, [](const McapMessage&) {}), McapError);
+  fs::remove(path);
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  EXPECT_THROW(ReadMcap(path, [](const McapMessage&) {}), McapError);
 }
 
 TEST_F(Mcap, NeverOverwrites) {

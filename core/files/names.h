@@ -1,0 +1,26 @@
+#pragma once
+
+/// Names that come from outside: of files, of models and their parts, of topics.
+
+#include <string>
+#include <string_view>
+
+namespace regrasp {
+
+inline constexpr std::size_t kMaxNameBytes = 128;
+
+/// What is wrong with a name, or "": empty, longer than kMaxNameBytes, not UTF-8, control
+/// characters or characters that change the direction of text.
+std::string NameFault(std::string_view name);
+
+/// The same for a name that becomes a file's: also no '/', and neither '.' nor '-' first.
+std::string FileNameFault(std::string_view name);
+
+/// The name as it may be shown to people: at most 64 bytes of it, control characters and what is
+/// not ASCII as "\x1b".
+std::string Shown(std::string_view name);
+
+/// True when the text is UTF-8 (of the shortest form, without surrogates).
+bool IsUtf8(std::string_view text);
+
+}  // namespace regrasp

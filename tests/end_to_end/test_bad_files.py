@@ -1,0 +1,133 @@
+"""Run files and checkpoints that are damaged or made by an enemy: an error or what is left, never a crash, and
+nothing outside the place that was named."""
+
+import copy
+import json
+import os
+import pathlib
+import shutil
+import struct
+import unittest
+
+from harness import DaemonCase
+
+MAGIC = b"\x89MCAP0\r\n"
+
+
+def text(value):
+    return struct.pack("<I", len(value)) + value
+
+
+def record(opcode, content):
+    return struct.pack("<BQ", opcode, len(content)) + content
+
+
+def channel(number, topic):
+    return (record(3, struct.pack("<H", number) + text(b"x") + text(b"jsonschema") + text(b"{}")) +
+            record(4, struct.pack("<HH", number, number) + text(topic) + text(b"json") + text(b"")))
+
+
+def message(number, data):
+    return record(5, struct.pack("<HIQQ", number, 0, 0, 0) + data)
+
+
+class BadFiles(DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1", "--paused"]
+
+    def setUp(self):
+        super().setUp()
+        self.json("record", "start", "good.mcap")
+        self.expect(0, "grasp")
+        self.expect(0, "step", 2500, "--wait")
+        self.good = pathlib.Path(self.json("record", "stop")["path"])
+        self.json("checkpoint", "save", "good")
+
+    def left(self, code, *words):
+        """Runs a command that makes a file; checks that the file is there exactly when that is said."""
+        done = self.regrasp(*words, "-o", self.dir / "made")
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        self.assertEqual((self.dir / "made").exists(), code != 74, done.stdout + done.stderr)
+        self.assertEqual([f for f in os.listdir(self.dir) if f.startswith(".draft")], [])
+        if (self.dir / "made").is_dir():
+            shutil.rmtree(self.dir / "made")
+        (self.dir / "made").unlink(missing_ok=True)
+        return done.stdout + done.stderr
+
+    def file(self, data):
+        path = self.dir / "bad.mcap"
+        path.write_bytes(data)
+        return path
+
+    def test_a_turned_bit_costs_a_chunk_and_is_named(self):
+        data = bytearray(self.good.read_bytes())
+        at = len(data) // 2
+        data[at] ^= 16
+        path = self.file(data)
+        for form in ("mcap", "csv", "npz"):
+            said = self.left(1, "export", path, "--format", form)
+            self.assertIn("lost: ", said)
+        lost = json.loads(self.regrasp("--json", "export", path, "--format", "npz", "-o", self.dir / "x.npz").stdout)["lost"]
+        self.assertEqual(len(lost), 1)
+        self.assertLessEqual(lost[0]["offset"], at)
+        self.assertGreater(lost[0]["offset"] + lost[0]["bytes"], at)
+        replayed = self.json("replay", path, code=1)
+        self.assertTrue(replayed["identical"])
+        self.assertEqual(replayed["lost"], lost)
+
+    def test_what_holds_no_run_is_an_error_and_leaves_nothing(self):
+        data = self.good.read_bytes()
+        for bad in (b"", b"hello", data[:2000], MAGIC, MAGIC + channel(1, b"state") + message(1, b"{}"), bytes(5000)):
+            path = self.file(bad)
+            for form in ("mcap", "csv", "npz"):
+                self.left(74, "export", path, "--format", form)
+            self.expect(74, "replay", path)
+
+    def test_names_that_lead_elsewhere_are_refused(self):
+        outside = self.dir / "pwned"
+        for topic in (b"../../pwned", str(outside).encode(), b"-x", b".x", b"a\x1bb", b"\xe2\x80\xae", b""):
+            path = self.file(MAGIC + channel(1, topic) + channel(2, b"run") + message(2, b'{"model":{"hand":{"joints":[],"fingers":[]}}}') +
+                             message(1, b'{"a":1}'))
+            for form in ("mcap", "csv", "npz"):
+                said = self.left(74, "export", path, "--format", form)
+                self.assertNotIn("\x1b", said)
+        self.assertFalse(list(self.dir.rglob("pwned*")))
+
+    def test_a_configuration_that_is_none_ends_no_program(self):
+        lines = (self.good.parent / "good.checkpoint").read_text(encoding="utf-8").split("\n")
+        config = json.loads(lines[1])
+
+        def spoilt(change):
+            broken = copy.deepcopy(config)
+            change(broken["model"], broken)
+            return broken
+
+        changes = [lambda m, c: m["hand"]["links"][3].update(parent_joint=1000), lambda m, c: m["hand"]["joints"][3].update(child_link=99999),
+                   lambda m, c: m["hand"]["fingers"][0].update(tip_link=-7), lambda m, c: m["hand"].update(fingers=m["hand"]["fingers"] * 4),
+                   lambda m, c: m["hand"].update(links=[]), lambda m, c: c["world"].update(dt_s=1e-300),
+                   lambda m, c: m["object"].update(kind=3, vertices_O=[[0, 0, 0], [1, 0, 0], [0, 1, 0]], triangles=[[0, 1, 10**9]])]
+        for i, change in enumerate(changes):
+            broken = spoilt(change)
+            state = {"segment": 0, "tick": 5, "commands": 0, "state_hash": "0" * 16}
+            path = self.file(MAGIC + channel(1, b"run") + channel(2, b"commands") + channel(3, b"state") + message(1, json.dumps(broken).encode()) +
+                             message(3, json.dumps(state).encode()))
+            self.refused(74, "replay", path)
+            name = f"bad{i}"
+            (self.good.parent / f"{name}.checkpoint").write_text("\n".join([lines[0], json.dumps(broken), *lines[2:]]), encoding="utf-8")
+            self.refused(74, "checkpoint", "restore", name)
+        head = json.loads(lines[0])
+        head["commands"] = 10**9
+        (self.good.parent / "many.checkpoint").write_text(json.dumps(head) + "\n" + "\n".join(lines[1:]), encoding="utf-8")
+        os.mkfifo(self.good.parent / "pipe.checkpoint")
+        os.mkfifo(self.good.parent / "pipe.mcap")
+        os.symlink("/dev/zero", self.good.parent / "zero.checkpoint")
+        os.symlink("/dev/zero", self.good.parent / "zero.mcap")
+        self.expect(74, "checkpoint", "restore", "many")
+        self.assertIn("good", [c["name"] for c in self.json("checkpoint", "list")["checkpoints"]])
+        self.assertEqual([r["file"] for r in self.json("record", "list")["recordings"]], ["good.mcap"])
+        for name in ("pipe", "zero"):
+            self.expect(74, "checkpoint", "restore", name)
+        self.expect(0, "status")
+
+
+if __name__ == "__main__":
+    unittest.main()
