@@ -104,7 +104,7 @@ class Row {
     if (++tick_ > kSettle) Measure(1e6 * (end - start));
   }
 
-  void Print(double reference_us, double exact_noise) const {
+  void Print(const Row& reference, double exact_noise) const {
     double creep = 0;
     for (const Finger& f : fingers_)
       if (f.first_n > 0 && f.last_n > 0)
@@ -112,11 +112,12 @@ class Row {
                                     (1e-3 * static_cast<double>(times_.us.size() - kWindow)));
     std::printf("%-34s %7.1f %7.1f %7.1f  %6.2f %6.2f   %8.2f %8.4f %6.2f %9.2f %8.2f\n",
                 name_.c_str(), times_.Quantile(.5), times_.Mean(), times_.Quantile(.99),
-                times_.Quantile(.5) / reference_us, times_.Mean() / reference_us, creep,
+                times_.Quantile(.5) / reference.median(), times_.Mean() / reference.mean(), creep,
                 ForceNoise(), ForceNoise() / exact_noise, 1e6 * drift_,
                 static_cast<double>(touching_) / static_cast<double>(times_.us.size()));
   }
   double median() const { return times_.Quantile(.5); }
+  double mean() const { return times_.Mean(); }
   double ForceNoise() const {
     return forces_ ? std::sqrt(square_ / static_cast<double>(forces_)) : 0;
   }
@@ -200,10 +201,10 @@ class Product {
     session_->TakeEvents();
     session_->TakeFinishedJobs();
   }
-  void Print(double reference_us) const {
+  void Print(const Row& reference) const {
     std::printf("%-34s %7.1f %7.1f %7.1f  %6.2f %6.2f\n", "regrasp, the whole tick",
                 times_.Quantile(.5), times_.Mean(), times_.Quantile(.99),
-                times_.Quantile(.5) / reference_us, times_.Mean() / reference_us);
+                times_.Quantile(.5) / reference.median(), times_.Mean() / reference.mean());
   }
 
  private:
@@ -248,12 +249,11 @@ int Main(int argc, char** argv) {
     for (int k = 0; k < kBlock; ++k) product.Tick();
   }
 #ifdef REGRASP_HAVE_MUJOCO
-  const double reference = rows[3].median();
-  std::printf("ratios: to MuJoCo's median\n");
+  const Row& reference = rows[3];
+  std::printf("ratios: to MuJoCo's median and mean\n");
 #else
-  const double reference = rows[2].median();
-  std::printf(
-      "ratios: to the median of dWorldStep with 22 hinges (no MuJoCo when this was built)\n");
+  const Row& reference = rows[2];
+  std::printf("ratios: to dWorldStep with 22 hinges (no MuJoCo when this was built)\n");
 #endif
   std::printf("%-34s %7s %7s %7s  %6s %6s   %8s %8s %6s %9s %8s\n", "collision and step [us]",
               "median", "mean", "p99", "ratio", "mean", "creep", "force sd", "rel", "drift um",
