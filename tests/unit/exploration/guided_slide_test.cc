@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/gait/gait_parameters.h"
+#include "core/shape/felt_surface.h"
 
 namespace regrasp {
 namespace {
@@ -86,9 +87,8 @@ class SlideTest : public ::testing::Test {
   }
   /// One tick of the slide, then the finger does as it is told.
   void Tick() {
-    const ControlTick tick{hand_,       estimate_, FingerSet::First(3),
-                           margins_,    gravity_,  control_,
-                           parameters_, gait_,     kDt};
+    const ControlTick tick{hand_,    estimate_, FingerSet::First(3), margins_, felt_,
+                           gravity_, control_,  parameters_,         gait_,    kDt};
     slide_.Update(tick, profile_, guide_, &controller_, &tasks_);
     ++ticks_;
     const FingerTask& task = tasks_[0];
@@ -120,6 +120,7 @@ class SlideTest : public ::testing::Test {
   ControlParameters control_;
   ExplorationParameters parameters_;
   const GaitParameters gait_;
+  FeltSurface felt_;
   LoadMargins margins_;
   SlideProfile profile_;
   SlideGuide guide_;
