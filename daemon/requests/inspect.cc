@@ -146,13 +146,6 @@ Outcome Identity(Service& service, const Params&, Client&) {
   LoadedScenario model = session.model;
   model.object = *service.accepted.object;
   const ModelHashes hashes = HashModels(model);
-  Parameters defaults = DefaultParameters(model);
-  Json changed = Json::object();
-  for (const ParameterInfo& info : ParameterTable()) {
-    Json value = ParameterJson(info, service.accepted.parameters).at("value");
-    if (value != ParameterJson(info, defaults).at("value"))
-      changed[std::string(info.name)] = std::move(value);
-  }
   const auto named = [](const std::string& name, std::uint64_t hash) {
     return Json{{"name", name}, {"hash", HashText(hash)}};
   };
@@ -162,7 +155,7 @@ Outcome Identity(Service& service, const Params&, Client&) {
                       {{"scenario", named(model.scenario.name, hashes.scenario)},
                        {"hand", named(model.hand.name, hashes.hand)},
                        {"object", named(model.object.name, hashes.object)}}},
-                     {"parameters", std::move(changed)}}};
+                     {"parameters", service.ChangedParameters()}}};
 }
 
 Outcome VersionOf(Service&, const Params&, Client&) {
