@@ -42,7 +42,7 @@ struct ControlTick {
   const Estimate& estimate;
   FingerSet grasp;  ///< the fingers that form the grasp
   const LoadMargins& margins;
-  const FeltSurface& felt;  ///< the object's surface, in O
+  const FeltSurface& felt;    ///< the object's surface, in O
   const Vector3d& gravity_W;  ///< [m/s²]
   const ControlParameters& control;
   const ExplorationParameters& exploration;

@@ -7,7 +7,7 @@
 namespace regrasp {
 namespace {
 
-constexpr double kDamping = 1e-6;  // m²: of the joint rates (1 mm)
+constexpr double kDamping = 1e-6;      // m²: of the joint rates (1 mm)
 constexpr double kMarginCounts = 0.2;  // of the way, from which on a margin in doubt ends it
 constexpr double kMarginShare = 0.25;  // of gait.margin_min, for that
 constexpr double kStuck_s = 0.5;

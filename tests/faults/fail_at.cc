@@ -1,4 +1,5 @@
-// Interposed under a program (LD_PRELOAD): the N-th call of one kind that concerns a directory fails.
+// Interposed under a program (LD_PRELOAD): the N-th call of one kind that concerns a directory
+// fails.
 //   FAIL_UNDER=DIR FAIL_CALL=open|write|fsync|rename FAIL_AT=N [FAIL_ERRNO=28]
 
 #include <dlfcn.h>
@@ -98,8 +99,7 @@ int rename(const char* from, const char* to) {
 }
 
 int renameat2(int from_fd, const char* from, int to_fd, const char* to, unsigned flags) {
-  static const auto real =
-      Real<int (*)(int, const char*, int, const char*, unsigned)>("renameat2");
+  static const auto real = Real<int (*)(int, const char*, int, const char*, unsigned)>("renameat2");
   return Fails("rename", Under(to)) ? -1 : real(from_fd, from, to_fd, to, flags);
 }
 

@@ -104,7 +104,8 @@ TEST(Rotate, RefusesToUnloadBelowTheMarginAndNamesIt) {
   SessionConfig config = Config(3);
   config.parameters.gait.margin_min = 2.0;  // more than any four fingers have without the thumb
   config.parameters.gait.margin_wanted = 0;
-  config.parameters.gait.plan = false;  // a planned gait asks for less after cycles without progress
+  config.parameters.gait.plan =
+      false;  // a planned gait asks for less after cycles without progress
   Session session(std::move(config));
   ASSERT_NO_FATAL_FAILURE(Grasp(session));
   session.Apply(Turn(360, -Vector3d::UnitZ()));

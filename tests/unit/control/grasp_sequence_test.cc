@@ -6,6 +6,7 @@
 
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"
+#include "core/shape/felt_surface.h"
 #include "tests/unit/control/held_sphere.h"
 
 namespace regrasp {
@@ -37,7 +38,7 @@ class GraspSequenceTest : public ::testing::Test {
   }
 
   ControlTick TickOf(const Estimate& e) const {
-    return {hand_, e, {}, margins_, gravity_, parameters_, exploration_, gait_, kDt};
+    return {hand_, e, {}, margins_, felt_, gravity_, parameters_, exploration_, gait_, kDt};
   }
 
   const LoadedScenario scenario_ = ShadowHand();
@@ -47,6 +48,7 @@ class GraspSequenceTest : public ::testing::Test {
   const ExplorationParameters exploration_;
   const GaitParameters gait_;
   const LoadMargins margins_;
+  const FeltSurface felt_;
   GraspSequence sequence_;
   HybridController controller_{hand_, kDt};
   FingerTasks tasks_;
