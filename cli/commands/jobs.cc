@@ -182,7 +182,7 @@ Json WaitForJob(Context& context, std::int64_t id, Standstill standstill) {
         return context.client().Call("job.wait", {{"id", id}, {"timeout_s", slice}}, slice + 10);
       } catch (const CliError& error) {
         if (error.code != kTimeout || error.rpc_code == 0) throw;
-        if (Clock::now() >= deadline) {
+        if (slice >= left || Clock::now() >= deadline) {
           throw CliError(kTimeout,
                          fmt::format("job {} has not ended after {:g} s; it goes on", id,
                                      *context.options().timeout_s),

@@ -63,18 +63,15 @@ void PrintTable(Context& context, const Json& answer) {
   const Json& parameters = At(answer, "parameters");
   if (parameters.empty()) return out.Line("every parameter has its default");
   const bool verbose = context.options().verbose;
-  std::vector<std::string> titles = {"NAME", ">VALUE", ">DEFAULT", "UNIT", "RANGE", "SOURCE"};
-  if (verbose) titles.push_back("MEANING");
+  std::vector<std::string> titles = {"NAME", ">VALUE", ">DEFAULT", "UNIT"};
+  if (verbose) titles.insert(titles.end(), {"RANGE", "SOURCE", "MEANING"});
   Table table(titles);
   for (const Json& p : parameters) {
     const Style style = At(p, "changed") == true ? Style::kWarn : Style::kPlain;
-    std::vector<std::string> cells = {Plain(At(p, "name")),
-                                      out.Paint(Typed(At(p, "value")), style),
-                                      Typed(At(p, "default")),
-                                      Plain(At(p, "unit")),
-                                      Range(p),
-                                      Plain(At(p, "source"))};
-    if (verbose) cells.push_back(Plain(At(p, "description")));
+    std::vector<std::string> cells = {Plain(At(p, "name")), out.Paint(Typed(At(p, "value")), style),
+                                      Typed(At(p, "default")), Plain(At(p, "unit"))};
+    if (verbose)
+      cells.insert(cells.end(), {Range(p), Plain(At(p, "source")), Plain(At(p, "description"))});
     table.Row(cells);
   }
   out.Add(table.Text(out));

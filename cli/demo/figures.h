@@ -74,6 +74,7 @@ class Figures {
   SteppedDaemon& daemon_;
   std::filesystem::path output_;
   std::int64_t seed_;
+  std::int64_t start_seed_ = seed_;  ///< of the start that is grasped
   double turns_;
   std::vector<Claim> claims_;
   bool held_ = true;

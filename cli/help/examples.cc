@@ -73,7 +73,7 @@ constexpr Example kExamples[] = {
     {"experiment exploration", "regrasp experiment exploration --finger ring --seeds 10 -o ring", "ten runs, a table, a picture"},
     {"experiment rotation", "regrasp experiment rotation --turns 1 --seeds 10 -o turns", "ten turns"},
     {"experiment zoo", "regrasp experiment zoo --objects zoo_pear,zoo_lens -n 5 -o zoo", "two objects, both gaits, paired"},
-    {"experiment exploration", "regrasp experiment exploration --estimator least_squares,secant -n 30 --format latex -o study", "a table for a paper"},
+    {"experiment exploration", "regrasp experiment exploration --estimator least_squares,secant -n 30 -o study", "two estimators on the same starts"},
     {"experiment rotation", "regrasp experiment rotation --set object.friction=0.4,0.6,0.8 -n 10 -o friction", "three settings, same seeds"},
     {"experiment noise-sweep", "regrasp experiment noise-sweep --finger ring --seeds 5 -o noise", "from perfect to bad sensors"},
     {"experiment paper", "regrasp experiment paper -o paper", "the reproduction report, an hour or so"},

@@ -9,22 +9,29 @@ namespace {
 
 using Neighbours = FixedVector<int, kMaxFingers>;
 
-/// Where the finger's first joint sits in the palm [m].
-Vector3d RootOf(const HandModel& hand, int finger) {
+constexpr int kJointsBeyondKnuckle = 2;  // of a finger: its two outer hinges
+
+/// Where the finger's knuckle is in the stretched hand: its third joint from the tip, or its first
+/// [m]. The root of a finger whose metacarpal moves would be near the wrist instead.
+Vector3d KnuckleOf(const HandModel& hand, int finger) {
   const std::vector<int>& joints = hand.fingers[finger].joints;
-  if (joints.empty()) return Vector3d::Zero();
-  return hand.joints[joints.front()].X_PJ.translation();
+  const int knuckle = std::max(0, static_cast<int>(joints.size()) - 1 - kJointsBeyondKnuckle);
+  Isometry3d X = Isometry3d::Identity();
+  for (int k = 0; k <= knuckle && k < static_cast<int>(joints.size()); ++k)
+    X = X * hand.joints[joints[k]].X_PJ;
+  return X.translation();
 }
 
-/// The others, the farthest from the opposing finger's root first; of equals in the hand's order.
+/// The others, the farthest from the opposing finger's knuckle first; of equals in the hand's
+/// order.
 Neighbours NeighboursOf(const HandModel& hand, int opposing, FingerSet fingers) {
   Neighbours neighbours;
   if (opposing < 0) {
     for (int i : fingers) neighbours.push_back(i);
     return neighbours;
   }
-  const Vector3d root = RootOf(hand, opposing);
-  const auto distance = [&](int finger) { return (RootOf(hand, finger) - root).norm(); };
+  const Vector3d knuckle = KnuckleOf(hand, opposing);
+  const auto distance = [&](int finger) { return (KnuckleOf(hand, finger) - knuckle).norm(); };
   for (int i : fingers.without(opposing)) {
     neighbours.push_back(i);
     for (std::size_t k = neighbours.size() - 1;

@@ -19,7 +19,7 @@ enum class GaitObjective : std::uint8_t {
 };
 
 /// Which finger is free. The opposing finger is the one without which the others can hold least
-/// (OpposingFinger); its neighbours are the others, in order: the farthest from its root first.
+/// (OpposingFinger); its neighbours are the others, in order: the farthest from its knuckle first.
 enum class GaitRole : std::uint8_t {
   kNobody,         ///< all fingers hold
   kNeighbours,     ///< all neighbours but the last, one after the other

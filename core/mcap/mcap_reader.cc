@@ -117,7 +117,7 @@ class Reader {
       if (!next) break;
       offset = *next;
     }
-    if (summary_.complete && expected_ > summary_.messages && summary_.lost.empty())
+    if (expected_ > summary_.messages && summary_.lost.empty())
       Lose({0, 0, 0, 0,
             "the file counts " + std::to_string(expected_) + " messages, " +
                 std::to_string(summary_.messages) + " were found"});

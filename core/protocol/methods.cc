@@ -18,6 +18,11 @@ constexpr std::array<std::string_view, 6> kPlots = {"comparison", "contacts", "g
 constexpr std::array<std::string_view, 6> kTopics = {"contacts", "events", "joints",
                                                      "quality",  "status", "truth"};
 
+// The default first.
+constexpr std::array kEstimators = {
+    kEstimatorNames[static_cast<std::size_t>(Estimator::kLeastSquares)],
+    kEstimatorNames[static_cast<std::size_t>(Estimator::kSecant)]};
+
 constexpr ParamSpec kCheckpointName = {
     .name = "name",
     .type = kString,
@@ -65,7 +70,7 @@ constexpr std::array kExplore = {
     ParamSpec{.name = "estimator",
               .type = kEnum,
               .sentence = "how it estimates the gradient; secant is the rule as printed",
-              .values = kEstimatorNames,
+              .values = kEstimators,
               .default_text = "least_squares"},
     ParamSpec{.name = "seed",
               .type = kInteger,

@@ -132,7 +132,7 @@ class Session(DaemonCase):
             self.assertEqual(self.expect(0, "plot", name, "-o", file).stdout, f"{file}\n")
             self.assertTrue(file.read_bytes().startswith(PNG))
         path = self.expect(0, "plot", "quality").stdout.strip()
-        self.assertEqual(path, str(self.dir / "out" / "quality.png"))
+        self.assertEqual(path, str(self.dir / "out" / "quality-2.png"))  # the first one stays
         self.refused(74, "plot", "quality", "-o", self.dir / "absent" / "x.png")
         # In the output directory itself it is there already; to standard output it goes as it is.
         self.expect(0, "plot", "quality", "-o", self.dir / "out" / "quality.png")

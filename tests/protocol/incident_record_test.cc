@@ -118,7 +118,7 @@ TEST_F(IncidentRecord, TheLoadMarginCountsUntilTheFirstContactIsLost) {
   const Incident incident = Make();
   EXPECT_DOUBLE_EQ(incident.least_margin, 0.04);
   EXPECT_DOUBLE_EQ(incident.least_margin_s, 4.5);
-  EXPECT_TRUE(Says(incident, "down to 0.04 N, below the limit of 0.10 N")) << incident.cause;
+  EXPECT_TRUE(Says(incident, "down to 0.04 N, below the limit of 0.25 N")) << incident.cause;
 }
 
 TEST_F(IncidentRecord, FrictionBelowWhatControlCountsOnIsSaid) {

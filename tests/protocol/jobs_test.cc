@@ -210,7 +210,7 @@ TEST_F(Jobs, TheListKeepsTheLast256) {
 TEST_F(Jobs, TooManyWaitingCommandsAreBusyAndTheClockStillObeys) {
   int accepted = 0;
   while (client->Error("noise.set", {{"position_m", 0.001}}) == 0 && accepted < 1000) ++accepted;
-  EXPECT_EQ(accepted, 64);
+  EXPECT_EQ(accepted, 200);
   Step(1);
   EXPECT_EQ(client->Error("noise.set", {{"position_m", 0.001}}), 0);
 }

@@ -84,9 +84,7 @@ TEST_F(Streams, AClientThatDoesNotReadIsEvictedAndTheOthersLiveOn) {
 }
 
 /// Makes an event.
-void Push(TestClient* client) {
-  client->Result("push", {{"force_n", {0, 0, 0.001}}, {"duration_s", 0.001}});
-}
+void MakeEvent(TestClient* client) { client->Result("noise.set", {{"position_m", 0.001}}); }
 
 TEST_F(Streams, AClientThatLeavesEventsUnreadIsEvicted) {
   limits.max_output_bytes = 64 * 1024;
@@ -96,7 +94,8 @@ TEST_F(Streams, AClientThatLeavesEventsUnreadIsEvicted) {
   deaf->Result("subscribe", {{"topic", "events"}});
   // The kernel takes some 200 KiB, an event has 150 bytes.
   int events = 0;
-  for (; events < 20'000 && other->Result("status")["clients"] == 2; ++events) Push(other.get());
+  for (; events < 20'000 && other->Result("status")["clients"] == 2; ++events)
+    MakeEvent(other.get());
   EXPECT_LT(events, 20'000);
   EXPECT_TRUE(deaf->ReachesEnd());
 }
@@ -122,7 +121,7 @@ TEST_F(Streams, ABatchOfLongAnswersIsAnsweredWhole) {
   config.paused = false;
   Start();
   const auto client = Connect();
-  for (int i = 0; i < 1000; ++i) Push(client.get());
+  for (int i = 0; i < 1000; ++i) MakeEvent(client.get());
   Json batch = Json::array();
   for (int i = 0; i < 32; ++i)
     batch.push_back(

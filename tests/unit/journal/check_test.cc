@@ -127,7 +127,7 @@ TEST(Check, RefusesWhatNoCommandCouldBe) {
     }
     return false;
   };
-  EXPECT_FALSE(refused("grasp", {}));
+  EXPECT_FALSE(refused("grasp", Json::object()));
   EXPECT_TRUE(refused("grasp", {{"tick", -1}}));
   EXPECT_TRUE(refused("grasp", {{"tick", 1e17}}));
   EXPECT_TRUE(refused("grasp", {{"job", -1}}));
