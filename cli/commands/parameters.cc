@@ -67,9 +67,10 @@ void PrintTable(Context& context, const Json& answer) {
   if (verbose) titles.insert(titles.end(), {"RANGE", "SOURCE", "MEANING"});
   Table table(titles);
   for (const Json& p : parameters) {
-    const Style style = At(p, "changed") == true ? Style::kWarn : Style::kPlain;
+    const bool changed = At(p, "changed") == true;
+    const Style style = changed ? Style::kWarn : Style::kPlain;
     std::vector<std::string> cells = {Plain(At(p, "name")), out.Paint(Typed(At(p, "value")), style),
-                                      Typed(At(p, "default")), Plain(At(p, "unit"))};
+                                      changed ? Typed(At(p, "default")) : "", Plain(At(p, "unit"))};
     if (verbose)
       cells.insert(cells.end(), {Range(p), Plain(At(p, "source")), Plain(At(p, "description"))});
     table.Row(cells);

@@ -63,7 +63,7 @@ class Methods:
         finger: the finger that explores; one of first, middle, ring, little, thumb.
         criterion: what it maximises; one of manipulability, stability, switched, combined; left out:
             manipulability.
-        estimator: how it estimates the gradient; secant is the rule as printed; one of secant, least_squares; left
+        estimator: how it estimates the gradient; secant is the rule as printed; one of least_squares, secant; left
             out: least_squares.
         seed: seed of the random start direction; 0 to 9007199254740992; left out: the seed of the run.
         max_cycles: give up after so many cycles; 1 to 1000000; left out: parameter exploration.max_cycles.

@@ -138,7 +138,8 @@ TEST(JournalText, TellsWhatIsWrong) {
   };
   EXPECT_NE(message("{").find("not JSON"), std::string::npos);
   EXPECT_NE(message("{}").find("segment is missing"), std::string::npos);
-  EXPECT_NE(message(R"({"segment":"x"})").find("segment: an integer is expected"), std::string::npos);
+  EXPECT_NE(message(R"({"segment":"x"})").find("segment: an integer is expected"),
+            std::string::npos);
   EXPECT_NE(
       message(R"({"segment":0,"seq":0,"tick":0,"method":"fly","state_hash":"0000000000000000"})")
           .find("unknown method 'fly'"),
