@@ -14,7 +14,7 @@ ELSEWHERE = {
     "top": "needs a terminal: test_top", "shell": "needs a terminal: test_shell",
     "replay": "needs a run file: test_record", "export": "needs a run file: test_record", "video": "needs a run file: test_record",
     "experiment exploration": "minutes: test_experiment", "experiment rotation": "minutes: test_experiment",
-    "experiment paper": "an hour: test_experiment", "experiment noise-sweep": "minutes: test_experiment", "experiment merge": "needs shards: test_experiment",
+    "experiment zoo": "minutes: test_experiment", "experiment paper": "an hour: test_experiment", "experiment noise-sweep": "minutes: test_experiment", "experiment merge": "needs shards: test_experiment",
 }
 ENDLESS = {"events -f"}
 # The exit codes an example may have besides 0: the operation was carried out and did not succeed.
