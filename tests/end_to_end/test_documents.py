@@ -43,9 +43,12 @@ def help_examples():
 
 
 def fenced(text):
-    """Commands in the fenced blocks of Markdown: lines after `$ `, or all lines where a block has none; comments and what follows `#` go."""
+    """Commands in the fenced blocks of Markdown, those of other languages left out: lines after `$ `, or all lines where a block has none;
+    comments and what follows `#` go."""
     commands = []
-    for block in re.findall(r"^```(?:console|sh)?\n(.*?)^```", text, re.S | re.M):
+    for language, block in re.findall(r"^```(\w*)\n(.*?)^```", text, re.S | re.M):
+        if language not in ("", "console", "sh"):
+            continue
         lines = block.splitlines()
         prompted = [line[2:] for line in lines if line.startswith("$ ")]
         commands += [re.sub(r"\s+#\s.*", "", line).strip() for line in prompted or lines]
