@@ -3,6 +3,7 @@
 /// The finger gait (Sec. III b): object motion with all fingers, then one finger after the other
 /// regrasps (gait_table.h), again and again, until the object has turned as far as wanted.
 
+#include "core/gait/forgiveness.h"
 #include "core/gait/gait_table.h"
 #include "core/gait/landing_plan.h"
 #include "core/gait/local_manipulation.h"
@@ -86,6 +87,7 @@ class FingerGait {
   /// The finger that regrasps, or -1.
   int finger() const { return phase_ == GaitPhase::kRegrasp ? regrasp_.finger() : -1; }
   const Regrasp& regrasp() const { return regrasp_; }
+  const Forgiveness& forgiveness() const { return forgiveness_; }
   const LocalManipulation& manipulation() const { return manipulation_; }
   const Happened& happened() const { return happened_; }
   /// Of the object reference about the axis, signed [rad].
@@ -134,10 +136,7 @@ class FingerGait {
     v("made_room", made_room_);
     v("sought_for", sought_for_);
     v("misses", misses_);
-    v("q_start", q_start_);
-    v("p_start", p_start_);
-    v("q_still", q_still_);
-    v("p_still", p_still_);
+    v("forgiveness", forgiveness_);
     v("cycles", cycles_);
     v("regrasps", regrasps_);
     v("happened", happened_);
@@ -150,13 +149,14 @@ class FingerGait {
   bool planned(const ControlTick& tick) const {
     return tick.gait.plan && request_.make_room_for < 0;
   }
+  double turned_so_far() const { return sign_ * turned_before_; }
   double manipulation_turned() const {
     return phase_ == GaitPhase::kObjectMotion ? manipulation_.travelled() : 0.0;
   }
   void SearchStance(const ControlTick& tick);
   void Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench);
   void StartMotion(const GaitParameters& parameters, const ObjectWrench& wrench);
-  void EndMotion();
+  void EndMotion(const GaitParameters& parameters);
   /// The same with landings planned on the felt surface: a refused finger waits; when only refused
   /// ones are left, the others make room for one of them.
   void NextPlanned(const ControlTick& tick, const ObjectWrench& wrench);
@@ -172,8 +172,14 @@ class FingerGait {
   bool MustBreakOff(const ControlTick& tick, const ObjectWrench& wrench);
   double ReserveOf(const ControlTick& tick, int finger) const;
   bool Unsteady(const ControlTick& tick) const;
-  /// The reference gives up what lasts of an error, and books the twist of it.
-  void Forgive(const ControlTick& tick, ObjectWrench* wrench);
+  /// The reference gives up what lasts of an error, and the twist of it is booked to what was
+  /// turned; `held`: at the end of a hold.
+  void Forgive(const ControlTick& tick, bool held, ObjectWrench* wrench);
+  // One tick of a phase each.
+  void UpdateStance(const ControlTick& tick);
+  ObjectMotion UpdateMotion(const ControlTick& tick, ObjectWrench* wrench);
+  void UpdateRegrasp(const ControlTick& tick, HybridController* controller, FingerTasks* tasks);
+  void UpdateRecover(const ControlTick& tick, ObjectWrench* wrench);
   /// Picks the next finger that shall and may leave, or starts the next object motion.
   void Next(const ControlTick& tick, const ObjectWrench& wrench);
   void EndCycle(const ControlTick& tick, const ObjectWrench& wrench);
@@ -225,12 +231,9 @@ class FingerGait {
   std::array<double, kMaxFingers> caution_{};
   double error_position_ = 0, error_rotation_ = 0;  // when the regrasp began [m, rad]
   bool regrasp_began_ = false;
-  FingerSet made_room_, sought_for_;               // in this cycle, for which fingers
-  int misses_ = 0;                                 // in a row
-  Quaterniond q_start_ = Quaterniond::Identity();  // reference when the rotation began
-  Vector3d p_start_ = Vector3d::Zero();
-  Quaterniond q_still_ = Quaterniond::Identity();  // sensed, some time before a recovery ends
-  Vector3d p_still_ = Vector3d::Zero();
+  FingerSet made_room_, sought_for_;  // in this cycle, for which fingers
+  int misses_ = 0;                    // in a row
+  Forgiveness forgiveness_;
   int cycles_ = 0, regrasps_ = 0;
   Happened happened_;
   char error_[160] = {};

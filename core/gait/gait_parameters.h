@@ -80,6 +80,55 @@ struct GaitParameters {
   double explore_settle_s = 0.08;  ///< rest before it, until the filters follow
   double return_limit_s = 0.6;     ///< longest way to its last end, and to the best contact
   Estimator estimator = Estimator::kLeastSquares;  ///< of its gradient
+  // Choosing, giving up, recovering; each row's meaning in full: core/session/parameters.cc.
+  double recover_limit_s = 2.0;  ///< a broken-off regrasp is followed by at most so long a hold [s]
+  double recovered = 0.5;        ///< ... which ends below this share of the abort limits
+  double second_thought_s = 0.3;  ///< a refusal stands when the margin has been low so long [s]
+  double finish_s = 0.4;          ///< rest at the end of a rotation [s]
+  double progress = 0.02;         ///< a cycle that turns the object less has not turned it [rad]
+  int idle_cycles = 3;            ///< by the table: such cycles in a row before it gives up
+  int patience = 20;              ///< the same with planned landings
+  int misses = 15;                ///< ... and landings in a row that found no surface
+  double lead_max =
+      0.35;  ///< most that a target is turned back beyond `lead` for a finger at its limit [rad]
+  double found_share = 0.5;   ///< weight of the newest exploration's end
+  double disc_inside = 0.9;   ///< what is remembered lies within this share of the disc
+  double disc_full = 0.5;     ///< the whole disc is free from this share of margin_wanted on
+  double want_more = 1.5;     ///< a refused opposing finger: more margin is sought by this factor
+  double plan_reach = 0.010;  ///< candidates for a landing lie so far about home [m]
+  double room_reach = 0.015;  ///< ... to make room for a refused finger [m]
+  double room_gain = 0.05;    ///< load margin for which a finger makes room [N]
+  double reserve_needed =
+      0.3;  ///< a refused finger with as much motion reserve may stay behind [rad]
+  double stance_reach = 0.015;  ///< a planned stance lies so far from the present one [m]
+  double steady_s = 0.04;       ///< a finger that has touched so long stands [s]
+  double away_s = 0.1;          ///< one that has not for so long is not counted on [s]
+  double leave_share = 0.4;    ///< while a finger leaves, this share of the abort limits breaks off
+  double margin_least = 0.02;  ///< margin_min after many cycles without progress [N]
+  double worth = 0.05;         ///< gain in score for which a finger leaves
+  double worth_scarce = 0.4;   ///< ... more of it where the margin without it is 0
+  double slip_s =
+      0.004;  ///< another finger without contact for so long: the load transfer failed [s]
+  double caution = 0.2;       ///< more load margin asked for after that [N]
+  double caution_kept = 0.5;  ///< share of it that a good regrasp leaves
+  double still_s = 1.0;  ///< an object that has rested so long may be forgiven at any margin [s]
+  double still_position = 0.001;      ///< ... which it has if it moved less than this [m]
+  double still_rotation = 0.1;        ///< ... and turned less than this [rad]
+  double forgive_margin = 0.3;        ///< otherwise with this load margin only [N]
+  double forgive_position = 0.001;    ///< so much of an error stays in the reference [m]
+  double forgive_rotation = 0.07;     ///< ... and so much of its rotation [rad]
+  double win_back_rotation = 0.12;    ///< tilt won back in a motion, at most [rad]
+  double win_back_position = 0.0025;  ///< place won back in a motion, at most [m]
+  double margin_counts = 0.2;  ///< planned: from this share of a motion on a low margin ends it
+  double margin_share = 0.25;  ///< ... low: below this share of margin_min
+  double stuck_s = 0.5;        ///< a motion ends after waiting so long for the object [s]
+  double stuck_yielding_s =
+      1.0;  ///< the same in `move`: a finger that begins to slip takes its time [s]
+  double limit_rate =
+      0.3;  ///< a joint slower than this does not run into its limit [rad per rad of the object]
+  double limit_rate_shift = 12.0;  ///< the same for a shift [rad/m]: equal at 25 mm from the axis
+  double yielding_cap = 2.0;       ///< force of a finger that shall slip, at most, in slide_force
+  double rest_s = 0.4;             ///< move: rest until the object has caught up [s]
 };
 
 }  // namespace regrasp

@@ -7,13 +7,7 @@
 namespace regrasp {
 namespace {
 
-constexpr double kDamping = 1e-6;      // m²: of the joint rates (1 mm)
-constexpr double kMarginCounts = 0.2;  // of the way, from which on a margin in doubt ends it
-constexpr double kMarginShare = 0.25;  // of gait.margin_min, for that
-constexpr double kStuck_s = 0.5;
-constexpr double kStuckYielding_s = 1.0;  // a finger that begins to slip takes its time
-constexpr double kMovesTurning = 0.3;     // rad per rad of the object
-constexpr double kMovesShifting = 12.0;  // rad per m of the object: the same at 25 mm from its axis
+constexpr double kDamping = 1e-6;        // m²: of the joint rates (1 mm)
 constexpr double kThereTurning = 1e-4;   // rad
 constexpr double kThereShifting = 1e-5;  // m
 
@@ -55,7 +49,8 @@ void LocalManipulation::Start(const ObjectMotion& per_path, double length, doubl
 bool LocalManipulation::AtJointLimit(const ControlTick& tick, int finger,
                                      const Vector3d& v_W) const {
   // A joint that moves less than this, per unit of path, may stand at its limit.
-  const double least_rate = (turns() ? kMovesTurning : 0.0) + kMovesShifting * per_path_.v_W.norm();
+  const double least_rate =
+      (turns() ? tick.gait.limit_rate : 0.0) + tick.gait.limit_rate_shift * per_path_.v_W.norm();
   const FingerEstimate& f = tick.finger(finger);
   const Vector3d along = DampedInverse(f.J, kDamping) * v_W;
   const auto& joints = tick.hand.fingers[finger].joints;
@@ -90,8 +85,8 @@ LocalManipulation::End LocalManipulation::FindEnd(const ControlTick& tick, const
   end_finger_ = -1;
   // On a planned stance the margin counts what is in doubt: it ends a motion that has made it
   // worse.
-  const bool far = !tick.gait.plan || travelled_ > kMarginCounts * length_;
-  const double least = tick.gait.margin_min * (tick.gait.plan ? kMarginShare : 1.0);
+  const bool far = !tick.gait.plan || travelled_ > tick.gait.margin_counts * length_;
+  const double least = tick.gait.margin_min * (tick.gait.plan ? tick.gait.margin_share : 1.0);
   return far && tick.margins.all < least ? End::kMargin : End::kNone;
 }
 
@@ -122,7 +117,8 @@ ObjectMotion LocalManipulation::Update(const ControlTick& tick, const ObjectWren
   } else if (stop_ && speed_ <= 0) {
     end_ = End::kStopped;
   } else {
-    const double patience = policy_ == AtLimit::kYields ? kStuckYielding_s : kStuck_s;
+    const double patience =
+        policy_ == AtLimit::kYields ? tick.gait.stuck_yielding_s : tick.gait.stuck_s;
     end_ = waited_ * dt > patience ? End::kStuck : found;
     if (end_ == End::kStuck && policy_ == AtLimit::kYields && limited_finger_ >= 0) {
       end_ = End::kJointLimit;

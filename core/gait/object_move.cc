@@ -3,12 +3,7 @@
 #include <algorithm>
 
 namespace regrasp {
-namespace {
-
-constexpr double kYieldingCap = 2.0;  // of the preferred force of a finger that shall slip
-constexpr double kRest_s = 0.4;       // until the object has caught up with its reference
-
-}  // namespace
+namespace {}  // namespace
 
 void ObjectMove::Start(const Request& request, const ControlTick& tick,
                        const ObjectWrench& wrench) {
@@ -46,13 +41,13 @@ ObjectMotion ObjectMove::Update(const ControlTick& tick, HybridController* contr
     task.cap = tick.control.max_normal_force;
     task.grip = tick.gait.grip_force;
     if (i != yielding) continue;
-    task.cap = std::min(task.cap, kYieldingCap * tick.gait.slide_force);
+    task.cap = std::min(task.cap, tick.gait.yielding_cap * tick.gait.slide_force);
     task.grip = tick.gait.slide_force;
   }
 
   using End = LocalManipulation::End;
   if (manipulation_.end() != End::kNone) {
-    active_ = ++rest_ticks_ * tick.dt < kRest_s;
+    active_ = ++rest_ticks_ * tick.dt < tick.gait.rest_s;
     return {};
   }
   const ObjectMotion motion = manipulation_.Update(tick, controller->wrench(), home_);

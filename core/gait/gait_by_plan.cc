@@ -1,0 +1,136 @@
+/// The finger gait with landings planned on the felt surface: who may leave, where it lands, and
+/// how the others make room for one that may not.
+#include <algorithm>
+#include <cmath>
+
+#include "core/gait/finger_gait.h"
+
+namespace regrasp {
+
+void FingerGait::StartPlan(int finger, double reach, const ControlTick& tick) {
+  LandingPlan::Request request;
+  request.finger = finger;
+  request.home = HomeOf(finger, tick.gait);
+  request.axis_W =
+      request_.make_room_for >= 0 ? Vector3d(Vector3d::Zero()) : Vector3d(sign_ * request_.axis_W);
+  request.room_for = room_for_;
+  request.reach = reach;
+  for (std::size_t k = 0; k + 1 < order_.size(); ++k)
+    if (order_[k].finger == finger) request.next = order_[k + 1].finger;
+  plan_.Start(request);
+  Enter(GaitPhase::kPlan);
+}
+
+void FingerGait::EndPlan(const ControlTick& tick) {
+  const Landing& landing = plan_.landing();
+  const int finger = plan_.request().finger;
+  const Vector3d p_WC = tick.estimate.p_WO + tick.estimate.q_WO * landing.p_OC;
+  const bool makes_room = room_for_ >= 0;
+  // To leave is a risk, the larger the scarcer the margin without the finger.
+  const double scarce =
+      std::clamp(1 - tick.margins.without[finger] / tick.gait.margin_wanted, 0.0, 1.0);
+  const double far = (p_WC - tick.finger(finger).p_WC).norm();
+  const bool worth =
+      !landing.stays &&
+      (makes_room ? landing.margin > tick.margins.without[room_for_] + tick.gait.room_gain
+                  : far > tick.gait.skip_distance &&
+                        landing.gain > tick.gait.worth + tick.gait.worth_scarce * scarce);
+  Enter(GaitPhase::kChoose);
+  if (landing.found && worth) StartRegrasp(tick, finger, landing);
+}
+
+void FingerGait::StartRegrasp(const ControlTick& tick, int finger, const Landing& landing) {
+  landing_[finger] = landing;
+  GaitStep step{finger, GaitObjective::kManipulability};
+  for (const GaitStep& row : order_)
+    if (row.finger == finger) step = row;
+  regrasp_.Start(RequestOf(step, plan_.request().next, tick));
+  happened_.regrasp_began = true;
+  Enter(GaitPhase::kRegrasp);
+}
+
+bool FingerGait::Unsteady(const ControlTick& tick) const {
+  for (int i : tick.grasp) {
+    const FingerEstimate& f = tick.finger(i);
+    const bool steady =
+        f.ticks_without_contact == 0 && f.ticks_in_contact * tick.dt >= tick.gait.steady_s;
+    const bool away = f.ticks_without_contact * tick.dt >= tick.gait.away_s;
+    if (!steady && !away) return true;
+  }
+  return false;
+}
+
+bool FingerGait::MayLeave(const ControlTick& tick, int finger) const {
+  // Without progress it is tried with less: the load transfer is careful, and ends in time.
+  const double needed =
+      std::max(tick.gait.margin_least, tick.gait.margin_min * std::exp2(-idle_cycles_));
+  return tick.margins.without[finger] >= needed + caution_[finger];
+}
+
+void FingerGait::EndStancePlan(const ControlTick& tick) {
+  Enter(GaitPhase::kChoose);
+  room_for_ = stance_plan_.leaves();
+  if (stance_plan_.margin() > stance_plan_.first_margin() + tick.gait.room_gain)
+    stance_queue_ = tick.grasp.without(room_for_);
+}
+
+void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench) {
+  if (Unsteady(tick) && ticks_ * tick.dt < tick.gait.second_thought_s) return;
+  if (room_for_ >= 0) {
+    if (MayLeave(tick, room_for_)) {
+      room_for_ = -1;
+      stance_queue_ = FingerSet();
+    } else {
+      for (int i : stance_queue_) {
+        stance_queue_.remove(i);
+        const Landing& landing = stance_plan_.landing(i);
+        const Vector3d p_WC = tick.estimate.p_WO + tick.estimate.q_WO * landing.p_OC;
+        const bool there = (p_WC - tick.finger(i).p_WC).norm() < tick.gait.skip_distance;
+        if (!there && MayLeave(tick, i)) return StartRegrasp(tick, i, landing);
+      }
+      for (int i : room_queue_) {
+        room_queue_.remove(i);
+        if (MayLeave(tick, i)) return StartPlan(i, tick.gait.room_reach, tick);
+      }
+      room_for_ = -1;
+    }
+  }
+  for (const GaitStep& step : order_) {
+    if (!waiting_.contains(step.finger) || !MayLeave(tick, step.finger)) continue;
+    waiting_.remove(step.finger);
+    return StartPlan(step.finger, tick.gait.plan_reach, tick);
+  }
+  if (waiting_.empty()) return EndCycle(tick, wrench);
+  // The margins still remember the finger before in the air.
+  if (ticks_ * tick.dt < tick.gait.second_thought_s) return;
+  // Of the fingers that must come along, the one that is nearest to leaving.
+  int refused = -1;
+  for (int i : waiting_)
+    if (refused < 0 || tick.margins.without[i] > tick.margins.without[refused]) refused = i;
+  const bool must = ReserveOf(tick, refused) < tick.gait.reserve_needed || idle_cycles_ > 0 ||
+                    tick.margins.all < 0.5 * tick.gait.margin_wanted;
+  if (must && !made_room_.contains(refused)) {
+    made_room_.add(refused);
+    room_for_ = refused;
+    room_queue_ = tick.grasp.without(refused);
+    return;
+  }
+  if (must && !sought_for_.contains(refused)) {
+    sought_for_.add(refused);
+    stance_plan_.Start(tick, refused, tick.gait.stance_reach,
+                       request_.seed + static_cast<std::uint64_t>(searches_++));
+    return Enter(GaitPhase::kStance);
+  }
+  refused_finger_ = happened_.refused_finger = refused;
+  refused_margin_ = happened_.refused_margin = tick.margins.without[refused];
+  waiting_.remove(refused);
+}
+
+double FingerGait::ReserveOf(const ControlTick& tick, int finger) const {
+  const FingerPosture now =
+      PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, tick.estimate.q));
+  return MotionReserve(tick.hand, finger, now, tick.estimate.p_WO, sign_ * request_.axis_W,
+                       tick.gait.limit_margin, tick.gait.reserve_needed);
+}
+
+}  // namespace regrasp

@@ -1,0 +1,89 @@
+/// The finger gait by the paper's table alone: who regrasps next, and contacts that let the
+/// opposing finger leave.
+#include <algorithm>
+
+#include "core/gait/finger_gait.h"
+
+namespace regrasp {
+namespace {
+
+constexpr int kSearchTicks = 5;    // from one evaluation of a stance to the next
+constexpr int kSearchLimit = 300;  // evaluations
+
+}  // namespace
+
+void FingerGait::SearchStance(const ControlTick& tick) {
+  const ControlParameters& control = tick.control;
+  if (ticks_ == 1) {
+    const int opposing = order_.empty() ? -1 : order_.back().finger;
+    const int leaves = request_.make_room_for >= 0 ? request_.make_room_for : opposing;
+    margin_wanted_ = std::max(tick.gait.margin_wanted, tick.gait.want_more * margin_wanted_);
+    search_.Start(first_stance_, home_.stance, tick.grasp, leaves, tick.gait.max_shift,
+                  request_.seed + static_cast<std::uint64_t>(searches_++));
+  }
+  if (ticks_ % kSearchTicks == 0)
+    search_.Step(control.mass_estimate * tick.gravity_W, control.friction_estimate,
+                 tick.estimate.object_scale, control.max_normal_force);
+  if (search_.margin() < margin_wanted_ && search_.evaluations() < kSearchLimit) return;
+  home_.stance = search_.stance();
+  waiting_ = tick.grasp.without(request_.make_room_for);
+  Enter(GaitPhase::kChoose);
+}
+
+void FingerGait::Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench) {
+  const Vector3d shift = tick.finger(finger).p_WC - wrench.p_ref() - HomeOf(finger, tick.gait).p_OC;
+  Vector3d& found = found_[finger];
+  found += tick.gait.found_share * (shift - found);
+  const double limit = tick.gait.disc_inside * tick.gait.disc_radius;
+  if (found.norm() > limit) found *= limit / found.norm();
+  gradient_[finger] = regrasp_.slide().algorithm().gradient_W();
+}
+
+double FingerGait::DiscShare(const ControlTick& tick) const {
+  if (order_.empty()) return 1;
+  const GaitParameters& parameters = tick.gait;
+  const double margin = tick.margins.without[order_.back().finger] - parameters.margin_min;
+  const double wanted = tick.gait.disc_full * parameters.margin_wanted - parameters.margin_min;
+  return wanted > 0 ? std::clamp(margin / wanted, 0.0, 1.0) : 1.0;
+}
+
+void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
+  const GaitParameters& parameters = tick.gait;
+  const bool exploring = parameters.mode == GaitMode::kExploring && request_.make_room_for < 0;
+  while (!waiting_.empty()) {
+    // The first of the table that waits, or the one farthest from its target.
+    int pick = -1;
+    double farthest = -1;
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      const int i = order_[k].finger;
+      if (!waiting_.contains(i)) continue;
+      const double distance = (TargetOf(i, wrench, tick).p_WC - tick.finger(i).p_WC).norm();
+      if (pick >= 0 && (!parameters.by_need || distance <= farthest)) continue;
+      pick = static_cast<int>(k);
+      farthest = distance;
+    }
+    if (pick < 0) break;
+    const GaitStep& step = order_[pick];
+    if ((!exploring || turned_before_ == 0) && farthest < parameters.skip_distance) {
+      waiting_.remove(step.finger);
+      continue;
+    }
+    const bool refused = tick.margins.without[step.finger] < parameters.margin_min;
+    // The margin still remembers the finger before in the air.
+    if (refused && ticks_ * tick.dt < tick.gait.second_thought_s) return;
+    waiting_.remove(step.finger);
+    if (refused) {
+      refused_finger_ = happened_.refused_finger = step.finger;
+      refused_margin_ = happened_.refused_margin = tick.margins.without[step.finger];
+      continue;
+    }
+    const int next = pick + 1 < static_cast<int>(order_.size()) ? order_[pick + 1].finger : -1;
+    regrasp_.Start(RequestOf(step, next, tick));
+    happened_.regrasp_began = true;
+    Enter(GaitPhase::kRegrasp);
+    return;
+  }
+  EndCycle(tick, wrench);
+}
+
+}  // namespace regrasp
