@@ -1,6 +1,6 @@
 // Interposed under a program (LD_PRELOAD): the N-th call of one kind that concerns a directory
-// fails.
-//   FAIL_UNDER=DIR FAIL_CALL=open|write|fsync|rename FAIL_AT=N [FAIL_ERRNO=28]
+// fails, or with FAIL_ON that and every later one.
+//   FAIL_UNDER=DIR FAIL_CALL=open|write|fsync|rename FAIL_AT=N [FAIL_ERRNO=28] [FAIL_ON=1]
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -40,7 +40,8 @@ bool Under(int fd) {
 /// True when this call is the one that fails; sets errno.
 bool Fails(const char* call, bool concerns) {
   if (!concerns || std::strcmp(Setting("FAIL_CALL"), call) != 0) return false;
-  if (++calls != std::atoi(Setting("FAIL_AT"))) return false;
+  const int call_number = ++calls, first = std::atoi(Setting("FAIL_AT"));
+  if (*Setting("FAIL_ON") ? call_number < first : call_number != first) return false;
   const char* number = Setting("FAIL_ERRNO");
   errno = *number ? std::atoi(number) : ENOSPC;
   return true;

@@ -1,0 +1,303 @@
+"""What the operating system does to the daemon: descriptors run out, the wall clock jumps, nobody reads the log, the
+disk fills while a run is recorded, programs are killed while they write. Each time an error or an
+event says so, the simulation goes on and no file is torn.
+
+    REGRASP_KILLS=100 REGRASP_BIN_DIR=build/release/bin REGRASP_SOURCE_DIR=. python3 tests/end_to_end/test_system_faults.py
+kills that many; the suite a few.
+"""
+
+import fcntl
+import json
+import os
+import pathlib
+import random
+import resource
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import time
+import unittest
+
+from harness import BIN, HANG_S, REGRASPD, SOURCE, Case, DaemonCase, environment
+
+LIBRARIES = pathlib.Path(os.environ.get("REGRASP_FAULT_LIBRARIES", BIN.parent / "tests"))
+KILLS = int(os.environ.get("REGRASP_KILLS", "2"))
+
+
+class Wire:
+    """One connection; `ask` returns the answer, `None` where the connection was given up."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.settimeout(HANG_S)
+        self.socket.connect(str(path))
+        self.lines = self.socket.makefile("rb")
+        self.last = 0
+        self.events = []
+
+    def send(self, method, **params):
+        self.last += 1
+        self.socket.sendall(json.dumps({"jsonrpc": "2.0", "id": self.last, "method": method, "params": params}).encode() + b"\n")
+
+    def ask(self, method, **params):
+        try:
+            self.send(method, **params)
+            while line := self.lines.readline():
+                answer = json.loads(line)
+                if answer.get("id") == self.last:
+                    return answer
+                self.events.append(answer)
+        except ConnectionError:
+            pass
+        return None
+
+    def result(self, method, **params):
+        answer = self.ask(method, **params)
+        if answer is None or "result" not in answer:
+            raise AssertionError(f"{method} {params}: {answer}")
+        return answer["result"]
+
+    def event(self, kind):
+        """The next event of that kind; others are passed over."""
+        while True:
+            for i, message in enumerate(self.events):
+                if message.get("params", {}).get("kind") == kind:
+                    del self.events[:i + 1]
+                    return message["params"]
+            self.events = []
+            line = self.lines.readline()
+            if not line:
+                raise AssertionError(f"the connection ended before {kind}")
+            self.events.append(json.loads(line))
+
+    def close(self):
+        self.lines.close()
+        self.socket.close()
+
+
+class SystemCase(Case):
+    def start(self, *arguments, preexec=None, stderr=subprocess.DEVNULL, **env):
+        self.socket.parent.mkdir(mode=0o700, exist_ok=True)
+        self.out = self.dir / "out"
+        self.daemon = subprocess.Popen([str(REGRASPD), "--socket", str(self.socket), "--output-dir", str(self.out), "--models-dir",
+                                        str(SOURCE / "models"), *arguments], env=environment(**env), stderr=stderr, preexec_fn=preexec)
+        self.addCleanup(self.daemon.wait)
+        self.addCleanup(self.daemon.kill)
+        while True:
+            self.assertIsNone(self.daemon.poll(), "the daemon has ended")
+            try:
+                wire = Wire(self.socket)
+            except OSError:
+                time.sleep(0.01)
+                continue
+            wire.result("version")  # it minds signals now
+            return wire
+
+    def goes_on(self, wire):
+        """The simulation moves, and the daemon ends cleanly when asked."""
+        before = wire.result("status")["tick"]
+        while wire.result("status")["tick"] <= before:
+            pass
+        self.daemon.terminate()
+        self.assertEqual(self.daemon.wait(HANG_S), 0)
+
+
+class Shared:
+    """A number that a program under test has mapped: written in place."""
+
+    def __init__(self, path, code):
+        self.code = code
+        path.write_bytes(struct.pack(code, 0))
+        self.file = os.open(path, os.O_RDWR)
+
+    def set(self, value):
+        os.pwrite(self.file, struct.pack(self.code, value), 0)
+
+    def close(self):
+        os.close(self.file)
+
+
+def preload(library):
+    assert (LIBRARIES / f"{library}.so").exists()
+    return str(LIBRARIES / f"{library}.so")
+
+
+class Descriptors(SystemCase):
+    def test_clients_that_take_every_descriptor_are_refused_and_the_others_live_on(self):
+        wire = self.start("--speed", "max", preexec=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (32, 32)))
+        wire.result("record.start", file="r.mcap")
+        wire.result("record.stop")
+        wire.result("checkpoint.save", name="x")
+        crowd = []
+        for _ in range(60):
+            client = socket.socket(socket.AF_UNIX)
+            client.connect(str(self.socket))
+            client.sendall(b'{"jsonrpc":"2.0","id":1,"method":"version"}\n')
+            crowd.append(client)
+        while len(os.listdir(f"/proc/{self.daemon.pid}/fd")) < 32:
+            wire.result("status")
+        # There is none left: what needs one says so, instead of "there are no files".
+        for method, params in (("record.list", {}), ("checkpoint.list", {}), ("record.start", {}), ("checkpoint.save", {"name": "x"}),
+                               ("plot", {"name": "scene"}), ("checkpoint.restore", {"name": "x"})):
+            answer = wire.ask(method, **params)
+            self.assertIn("error", answer, f"{method}: {answer}")
+            self.assertEqual(answer["error"]["code"], -32007, f"{method}: {answer}")
+        self.assertIn("result", wire.ask("grasp"))
+        for client in crowd:
+            client.close()
+        late = Wire(self.socket)  # one of those that had no descriptor
+        self.assertEqual([r["file"] for r in late.result("record.list")["recordings"]], ["r.mcap"])
+        self.assertEqual(sorted(os.listdir(self.out)), ["r.mcap", "x.checkpoint"])
+        self.goes_on(late)
+
+
+class WallClock(SystemCase):
+    def test_an_hour_forth_and_back_changes_nothing(self):
+        clock = Shared(self.dir / "wrong", "<q")
+        self.addCleanup(clock.close)
+        wire = self.start("--speed", "1.0", LD_PRELOAD=preload("wall_clock"), WALL_CLOCK=str(self.dir / "wrong"))
+        wire.result("record.start", file="r.mcap")
+        job = wire.result("grasp")["job"]
+        times, wall = [], []
+        for wrong in (3600, -3600, 0, -86400 * 20000, 0):
+            wire.send("job.wait", id=job, timeout_s=0.5)
+            clock.set(wrong)
+            wire.result("status")
+            answer = next((a for a in wire.events if "id" in a), None) or json.loads(wire.lines.readline())  # not in an hour
+            self.assertTrue(answer.get("error", {}).get("code") == -32004 or answer["result"]["state"] == "done", answer)
+            wire.events = []
+            wire.result("checkpoint.save", name="c")
+            wire.result("plot", name="scene", file="s.png", overwrite=True)
+            times.append(wire.result("status")["time_s"])
+            wall.append(time.monotonic())
+        self.assertEqual(times, sorted(times))
+        # In real time: the simulation has not caught up an hour, nor stood still.
+        self.assertLess(times[-1] - times[0], wall[-1] - wall[0] + 5)
+        wire.result("record.stop")
+        self.assertEqual(self.json("replay", self.out / "r.mcap")["identical"], True)
+        self.goes_on(wire)
+
+
+class Log(SystemCase):
+    def fill(self, wire):
+        """More than a pipe of four pages holds: a line for each signal."""
+        for _ in range(400):
+            self.daemon.send_signal(signal.SIGHUP)
+            wire.result("status")
+
+    def test_nobody_reads_it(self):
+        reader, writer = os.pipe()
+        fcntl.fcntl(writer, fcntl.F_SETPIPE_SZ, 16384)
+        wire = self.start("--speed", "max", stderr=writer)
+        self.fill(wire)
+        os.set_blocking(reader, False)
+        self.assertGreater(len(os.read(reader, 65536)), 1000)
+        self.fill(wire)
+        self.assertIn(b"lines were lost", os.read(reader, 65536))
+        os.close(writer)
+        self.goes_on(wire)
+        os.close(reader)
+
+    def test_its_reader_has_gone(self):
+        reader, writer = os.pipe()
+        wire = self.start("--speed", "max", stderr=writer)
+        os.close(reader)
+        os.close(writer)
+        self.fill(wire)
+        self.goes_on(wire)
+
+
+class FullDisk(SystemCase):
+    def test_a_recording_that_the_disk_cannot_take_is_told_at_once(self):
+        env = {"LD_PRELOAD": preload("fail_at"), "FAIL_UNDER": str(self.dir / "out"), "FAIL_CALL": "write", "FAIL_AT": "40", "FAIL_ON": "1"}
+        wire = self.start("--speed", "max", **env)
+        wire.result("subscribe", topic="events", rate_hz=100)
+        wire.result("record.start", file="r.mcap")
+        wire.result("grasp")
+        event = wire.event("recording_failed")
+        self.assertIn("r.mcap", event["text"])
+        self.assertIn("No space left", event["text"])
+        listed = {r["file"]: r for r in wire.result("record.list")["recordings"]}
+        self.assertFalse(listed["r.mcap"]["recording"])
+        told = wire.ask("record.stop")["error"]
+        self.assertEqual(told["code"], -32007)
+        self.assertIn("No space left", told["message"])
+        for method, params in (("checkpoint.save", {"name": "c"}), ("record.start", {"file": "s.mcap"})):
+            self.assertEqual(wire.ask(method, **params)["error"]["code"], -32007)
+        self.goes_on(wire)
+        self.assertEqual([f for f in os.listdir(self.out) if f.startswith(".draft") or f.endswith(".checkpoint")], [])
+
+
+class Kills(SystemCase):
+    def test_the_daemon_while_it_writes_everything_at_once(self):
+        r = random.Random(11)
+        for number in range(KILLS):
+            wire = self.start("--speed", "max")
+            self.assertEqual([f for f in os.listdir(self.out) if f.startswith(".draft")] if self.out.exists() else [], [])
+            wire.send("record.start", file=f"r{number}.mcap")
+            wire.send("grasp")
+            for i in range(20):
+                wire.send("checkpoint.save", name=f"c{i}")
+                wire.send("plot", name="scene", file=f"p{i}.png", overwrite=True)
+            for _ in range(r.randrange(40)):
+                wire.lines.readline()
+            self.daemon.kill()
+            self.daemon.wait()
+            wire.close()
+            for file in self.out.iterdir():
+                if file.name.startswith(".draft"):
+                    continue
+                if file.suffix == ".png":
+                    data = file.read_bytes()
+                    self.assertEqual((data[:4], data[-8:-4]), (b"\x89PNG", b"IEND"), file)
+                elif file.suffix == ".checkpoint":
+                    for line in file.read_text(encoding="utf-8").splitlines():
+                        json.loads(line)
+            run = self.out / f"r{number}.mcap"
+            if run.exists() and run.stat().st_size > 0:
+                done = self.regrasp("--json", "replay", run)
+                self.assertIn(done.returncode, (0, 74), done.stdout + done.stderr)  # 74: killed before the run was in it
+                self.assertTrue(done.returncode == 74 or json.loads(done.stdout)["identical"])
+
+
+class KilledTools(DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1", "--paused"]
+
+    def test_export_and_video_leave_all_or_nothing_under_the_name(self):
+        self.json("record", "start", "run.mcap", "--rate", "100")
+        self.expect(0, "grasp")
+        self.expect(0, "step", 4000, "--wait")
+        run = pathlib.Path(self.json("record", "stop")["path"])
+        r = random.Random(5)
+        made = self.dir / "made"
+        for suffix, words in (("", ["export", "--format", "csv"]), (".npz", ["export", "--format", "npz"]),
+                              (".mcap", ["export", "--format", "mcap"]), (".mp4", ["video", "--to", "1"])):
+            target = made / f"x{suffix}"
+            command = [str(BIN / "regrasp-run"), words[0], str(run), *words[1:], "--output", str(target)]
+            started = time.monotonic()
+            self.assertEqual(subprocess.run(command, env=environment(), capture_output=True, check=False).returncode, 0)
+            whole_s = time.monotonic() - started
+            whole = self.size(target)
+            for _ in range(KILLS):
+                self.remove(target)
+                tool = subprocess.Popen(command, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                time.sleep(r.uniform(0, 1.2 * whole_s))
+                tool.kill()
+                tool.wait()
+                if target.exists():
+                    self.assertEqual(self.size(target), whole, target)
+            self.remove(target)
+
+    @staticmethod
+    def size(path):
+        return {f.name: f.stat().st_size for f in path.iterdir()} if path.is_dir() else path.stat().st_size
+
+    @staticmethod
+    def remove(path):
+        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    unittest.main()
