@@ -119,6 +119,18 @@ double Volume(const TriangleMesh& mesh) {
   return six_volumes / 6;
 }
 
+bool IsInside(const std::vector<Vector3d>& vertices, const std::vector<Eigen::Vector3i>& triangles,
+              const Vector3d& p) {
+  double angle = 0;
+  for (const Eigen::Vector3i& t : triangles) {
+    const Vector3d a = vertices[t[0]] - p, b = vertices[t[1]] - p, c = vertices[t[2]] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)),
+                            la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle > 2 * M_PI;
+}
+
 TriangleMesh WeldMesh(const RawMesh& raw, const Vector3d& scale) {
   TriangleMesh mesh;
   Eigen::AlignedBox3d box;

@@ -37,4 +37,10 @@ void CloseMesh(const std::filesystem::path& file, bool mirrored, TriangleMesh* m
 /// Volume enclosed by a closed mesh: sum over triangles of det(a, b, c) / 6.
 double Volume(const TriangleMesh& mesh);
 
+/// Whether a point lies inside closed surfaces (inside one of them, where they overlap): the solid
+/// angle under which they are seen is 4 pi from inside, 0 from outside [Van Oosterom, Strackee
+/// 1983].
+bool IsInside(const std::vector<Vector3d>& vertices, const std::vector<Eigen::Vector3i>& triangles,
+              const Vector3d& p);
+
 }  // namespace regrasp

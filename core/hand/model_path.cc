@@ -24,10 +24,23 @@ bool IsDirectory(const fs::path& path) {
   return fs::is_directory(path, ignored);
 }
 
-bool EndsInUrdf(const std::string& name) {
+std::string Suffix(const std::string& name) {
   std::string suffix = fs::path(name).extension().string();
   std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
-  return suffix == ".urdf";
+  return suffix;
+}
+
+/// What to do with a file of another kind.
+const char* Advice(const std::string& suffix) {
+  if (suffix == ".xacro") return "; run xacro over it: xacro FILE.xacro -o FILE.urdf";
+  for (const char* mesh : {".obj", ".stl", ".ply", ".dae", ".glb"})
+    if (suffix == mesh)
+      return "; a mesh needs one that names it in <collision><geometry><mesh filename=...>, with "
+             "its "
+             "mass";
+  for (const char* other : {".sdf", ".world", ".xml", ".mjcf", ".usd", ".usda"})
+    if (suffix == other) return "; SDF, MJCF and USD are not read";
+  return "";
 }
 
 }  // namespace
@@ -60,13 +73,14 @@ std::vector<fs::path> ModelSearchPath(const std::string& models_dir) {
 
 fs::path FindModel(const std::string& name, const char* kind,
                    const std::vector<fs::path>& search_path) {
-  if (EndsInUrdf(name)) {
+  if (Suffix(name) == ".urdf") {
     if (IsFile(name)) return name;
     throw ModelError(fmt::format("{}: file not found", name));
   }
   const bool names_file = name.find('/') != std::string::npos && fs::path(name).has_extension();
   if (names_file || IsFile(name))
-    throw ModelError(fmt::format("{}: a model file must end in .urdf", name));
+    throw ModelError(
+        fmt::format("{}: a model file must end in .urdf{}", name, Advice(Suffix(name))));
   // A name is one path component, so that it cannot lead out of the search path.
   if (!name.empty() && fs::path(name).filename() == name)
     for (const fs::path& directory : search_path) {

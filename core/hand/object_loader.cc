@@ -1,33 +1,47 @@
 #include "core/hand/object_loader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "core/hand/mesh.h"
+#include "core/hand/primitive_mesh.h"
 #include "core/hand/solid.h"
+#include "core/hand/toml_file.h"
 #include "core/hand/urdf_file.h"
 
 namespace regrasp {
 namespace {
 
-TriangleMesh BoxMesh(const Vector3d& size) {
-  TriangleMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices.push_back(
-        size.cwiseProduct(Vector3d((i & 1) - 0.5, ((i >> 1) & 1) - 0.5, ((i >> 2) & 1) - 0.5)));
-  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
+/// Surfaces that share no corner.
+int CountPieces(const ObjectModel& object) {
+  std::vector<int> up(object.vertices_O.size());
+  std::iota(up.begin(), up.end(), 0);
+  const auto top = [&](int i) {
+    while (up[static_cast<std::size_t>(i)] != i)
+      i = up[static_cast<std::size_t>(i)] =
+          up[static_cast<std::size_t>(up[static_cast<std::size_t>(i)])];
+    return i;
+  };
+  for (const Eigen::Vector3i& t : object.triangles)
+    for (int k = 1; k < 3; ++k) up[static_cast<std::size_t>(top(t[k]))] = top(t[0]);
+  int pieces = 0;
+  for (std::size_t i = 0; i < up.size(); ++i) pieces += up[i] == static_cast<int>(i);
+  return pieces;
 }
 
 class ObjectReader {
  public:
-  ObjectReader(const std::filesystem::path& path, const LoadOptions& options, ModelReport* report)
+  ObjectReader(const std::filesystem::path& path, const LoadOptions& options, ModelReport* report,
+               ObjectFacts* facts)
       : problems_(path.string()),
         file_(ReadUrdf(path, &problems_)),
         options_(options),
-        report_(report) {}
+        report_(report),
+        facts_out_(facts) {}
 
   ObjectModel Read() {
     problems_.ThrowIfAny();
@@ -51,29 +65,27 @@ class ObjectReader {
     problems_.ThrowIfAny();
     ReadBody();
     problems_.ThrowIfAny();
+    if (facts_out_ != nullptr) *facts_out_ = facts_;
     return std::move(object_);
   }
 
  private:
-  /// The shape in the link's frame; meshes and boxes become one mesh where they must.
+  /// The shape, about the centre of mass.
   void ReadShape() {
     using Kind = UrdfGeometry::Kind;
     const UrdfCollision& first = collisions_.front();
     const UrdfGeometry& geometry = first.geometry;
-    if (collisions_.size() > 1) return ReadPieces();
-    Isometry3d X = first.X_LG;
+    facts_.collisions = static_cast<int>(collisions_.size());
+    facts_.pieces = 1;
     // A homogeneous body has its centre of mass in its middle.
-    X.pretranslate(options_.inertia_from_shape ? Vector3d(-X.translation()) : Vector3d(-PCom()));
-    const bool centred = X.isApprox(Isometry3d::Identity(), 1e-9);
-    if (geometry.kind == Kind::kMesh || (geometry.kind == Kind::kBox && !centred))
+    facts_.p_LCom = options_.inertia_from_shape ? first.X_LG.translation() : PCom();
+    const Matrix3d& R = first.X_LG.linear();
+    const bool turned = geometry.kind == Kind::kSphere     ? false
+                        : geometry.kind == Kind::kCylinder ? std::abs(R(2, 2)) < 1 - 1e-12
+                                                           : !R.isIdentity(1e-9);
+    if (collisions_.size() > 1 || geometry.kind == Kind::kMesh || turned ||
+        (first.X_LG.translation() - facts_.p_LCom).norm() > 1e-9)
       return ReadPieces();
-    if (!centred) {
-      problems_.Add(first.line,
-                    "{}: a sphere or cylinder must have its <collision> <origin> at the centre of "
-                    "mass, unrotated",
-                    element_);
-      return;
-    }
     if (geometry.kind == Kind::kSphere) {
       object_.kind = ObjectModel::Kind::kSphere;
       object_.radius = object_.bounding_radius = geometry.radius;
@@ -90,25 +102,29 @@ class ObjectReader {
     CheckSize();
   }
 
+  /// Throws ModelError.
+  static TriangleMesh MeshOf(const UrdfGeometry& geometry) {
+    switch (geometry.kind) {
+      case UrdfGeometry::Kind::kSphere:
+        return CapsuleMesh(geometry.radius, 0);
+      case UrdfGeometry::Kind::kCylinder:
+        return CapsuleMesh(geometry.radius, geometry.length / 2);
+      case UrdfGeometry::Kind::kBox:
+        return BoxMesh(geometry.size);
+      case UrdfGeometry::Kind::kMesh:
+        break;
+    }
+    return LoadClosedMesh(geometry.mesh, geometry.scale);
+  }
+
   void ReadPieces() {
     object_.kind = ObjectModel::Kind::kMesh;
     for (const UrdfCollision& piece : collisions_) {
-      const UrdfGeometry& geometry = piece.geometry;
       TriangleMesh mesh;
-      if (geometry.kind == UrdfGeometry::Kind::kMesh) {
-        try {
-          mesh = LoadClosedMesh(geometry.mesh, geometry.scale);
-        } catch (const ModelError& error) {
-          problems_.Add(geometry.line, "{}: {}", element_, error.what());
-          continue;
-        }
-      } else if (geometry.kind == UrdfGeometry::Kind::kBox) {
-        mesh = BoxMesh(geometry.size);
-      } else {
-        problems_.Add(geometry.line,
-                      "{}: a sphere or cylinder beside other <collision> elements; allowed are "
-                      "meshes and boxes",
-                      element_);
+      try {
+        mesh = MeshOf(piece.geometry);
+      } catch (const ModelError& error) {
+        problems_.Add(piece.geometry.line, "{}: {}", element_, error.what());
         continue;
       }
       const int base = static_cast<int>(object_.vertices_O.size());
@@ -121,12 +137,12 @@ class ObjectReader {
     if (object_.vertices_O.size() > kMaxVertices)
       problems_.Add(0, "the pieces have {} vertices; allowed are at most {}",
                     object_.vertices_O.size(), kMaxVertices);
-    const Vector3d p_com = options_.inertia_from_shape
-                               ? MeshSolid({object_.vertices_O, object_.triangles}).centre
-                               : PCom();
+    const Solid solid = PiecesSolid({object_.vertices_O, object_.triangles}, &facts_.overlap_m3);
+    facts_.p_LCom = options_.inertia_from_shape ? solid.centre : PCom();
+    facts_.pieces = CountPieces(object_);
     object_.bounding_radius = 0;
     for (Vector3d& v : object_.vertices_O) {
-      v -= p_com;
+      v -= facts_.p_LCom;
       object_.bounding_radius = std::max(object_.bounding_radius, v.norm());
     }
     CheckSize();
@@ -176,6 +192,8 @@ class ObjectReader {
   UrdfFile file_;
   const LoadOptions& options_;
   ModelReport* report_;
+  ObjectFacts* facts_out_;
+  ObjectFacts facts_;
   std::string element_;
   std::vector<UrdfCollision> collisions_;
   UrdfInertial inertial_;
@@ -185,8 +203,29 @@ class ObjectReader {
 }  // namespace
 
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options,
-                           ModelReport* report) {
-  return ObjectReader(urdf_file, options, report).Read();
+                           ModelReport* report, ObjectFacts* facts) {
+  return ObjectReader(urdf_file, options, report, facts).Read();
+}
+
+ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options,
+                           ModelReport* report, ObjectFacts* facts) {
+  std::filesystem::path toml_file = urdf_file;
+  toml_file.replace_extension(".toml");
+  std::error_code ignored;
+  double friction = ObjectModel().friction;
+  if (std::filesystem::is_regular_file(toml_file, ignored)) {
+    const TomlFile file(toml_file);
+    file.CheckKeys(file.root(), {"friction", "inertia_from_shape", "force"});
+    if (const toml::node* node = file.root().get("friction"))
+      friction = file.Number(*node, "friction", 1e-3, 1);
+    options.inertia_from_shape |= file.Flag(file.root(), "inertia_from_shape");
+    options.force |= file.Flag(file.root(), "force");
+    file.ThrowIfAny();
+  }
+  ObjectModel model = LoadObjectUrdf(urdf_file, options, report, facts);
+  model.name = urdf_file.stem().string();
+  model.friction = friction;
+  return model;
 }
 
 }  // namespace regrasp

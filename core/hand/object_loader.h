@@ -10,12 +10,27 @@
 
 namespace regrasp {
 
-/// Loads and checks an object: one link (links fixed to it are merged) with its <collision>: a
-/// sphere or cylinder (read as a capsule along z) whose middle is the centre of mass, unrotated; or
-/// boxes and closed meshes, of any pose and number, which together are one surface. The origin is
-/// moved to the centre of mass. A body that cannot be is refused with the flag that mends it. Adds
-/// to `report` where given. Throws ModelError with all that is wrong, each with its line.
+/// What the file says that is not simulated; for `regrasp object show`.
+struct ObjectFacts {
+  Vector3d p_LCom = Vector3d::Zero();  ///< centre of mass in the link's frame [m]
+  int collisions = 0;                  ///< <collision> elements
+  int pieces = 0;                      ///< closed surfaces that share no corner
+  double overlap_m3 = 0;               ///< volume that lies in several pieces, counted once
+};
+
+/// Loads and checks an object: one link with its <collision> elements, of any pose and number:
+/// spheres, cylinders (read as capsules), boxes and closed meshes, which together are one body. A
+/// sphere, capsule or box alone, in the link's axes about the centre of mass, stays what it is;
+/// anything else becomes one mesh (round pieces by facets, primitive_mesh.h), and where pieces
+/// overlap the body is their union. The origin is moved to the centre of mass. A body that cannot
+/// be is refused with the flag that mends it. Adds to `report` and `facts` where given. Throws
+/// ModelError with all that is wrong, each with its line.
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options = {},
-                           ModelReport* report = nullptr);
+                           ModelReport* report = nullptr, ObjectFacts* facts = nullptr);
+
+/// The same with what the .toml file of the same name beside it says: friction,
+/// inertia_from_shape, force. The object is called as the file.
+ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options = {},
+                           ModelReport* report = nullptr, ObjectFacts* facts = nullptr);
 
 }  // namespace regrasp

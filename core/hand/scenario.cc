@@ -153,22 +153,7 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
 
 ObjectModel LoadObject(const std::string& object, const std::vector<fs::path>& search_path,
                        const LoadOptions& options, ModelReport* report) {
-  const fs::path urdf_file = FindModel(object, "objects", search_path);
-  LoadOptions of_object = options;
-  double friction = ObjectModel().friction;
-  if (const fs::path toml_file = Beside(urdf_file); IsFile(toml_file)) {
-    const TomlFile file(toml_file);
-    file.CheckKeys(file.root(), {"friction", "inertia_from_shape", "force"});
-    if (const toml::node* node = file.root().get("friction"))
-      friction = file.Number(*node, "friction", 1e-3, 1);
-    of_object.inertia_from_shape |= file.Flag(file.root(), "inertia_from_shape");
-    of_object.force |= file.Flag(file.root(), "force");
-    file.ThrowIfAny();
-  }
-  ObjectModel model = LoadObjectUrdf(urdf_file, of_object, report);
-  model.name = urdf_file.stem().string();
-  model.friction = friction;
-  return model;
+  return LoadObjectFile(FindModel(object, "objects", search_path), options, report);
 }
 
 std::vector<std::string> ListObjects(const std::vector<fs::path>& search_path) {

@@ -1,21 +1,24 @@
 #include "core/hand/urdf_file.h"
 
+#include <console_bridge/console.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <set>
+#include <map>
+#include <mutex>
 #include <sstream>
 #include <system_error>
 
-#include "core/hand/urdf_values.h"
-#include "core/hand/xml.h"
+#include "core/hand/model_xml.h"
+#include "core/hand/urdf_check.h"
 
 namespace regrasp {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kMaxElements = 300;  // links or joints: ten times what a hand may have
+using tinyxml2::XMLElement;
 
 std::string ReadText(const fs::path& path) {
   std::error_code error;
@@ -32,276 +35,153 @@ std::string ReadText(const fs::path& path) {
   return text.str();
 }
 
-class Reader {
+/// Collects what urdfdom would print. One at a time: the handler is the process's.
+class CollectedLog : public console_bridge::OutputHandler {
  public:
-  Reader(const fs::path& path, Problems* problems) : path_(path), problems_(problems) {}
-
-  UrdfFile Read(const XmlNode& robot) {
-    const std::string* name = robot.Find("name");
-    if (name == nullptr) problems_->Add(robot.line, "<robot> name is missing");
-    if (name != nullptr) file_.name = *name;
-    for (const XmlNode& node : robot.children)
-      if (node.name == "link") ReadLink(node);
-    for (const XmlNode& node : robot.children)
-      if (node.name == "joint") ReadJoint(node);
-    if (file_.links.empty()) problems_->Add(robot.line, "<robot> has no <link>");
-    for (const std::size_t count : {file_.links.size(), file_.joints.size()})
-      if (count > kMaxElements)
-        problems_->Add(robot.line, "<robot> has {} links or joints; allowed are at most {}", count,
-                       kMaxElements);
-    if (problems_->empty()) CheckTree();
-    return std::move(file_);
+  CollectedLog() : lock_(mutex_), previous_(console_bridge::getOutputHandler()) {
+    console_bridge::useOutputHandler(this);
   }
+  ~CollectedLog() override { console_bridge::useOutputHandler(previous_); }
+  CollectedLog(const CollectedLog&) = delete;
+  CollectedLog& operator=(const CollectedLog&) = delete;
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR)
+      text_ += (text_.empty() ? "" : "; ") + text;
+  }
+  const std::string& text() const { return text_; }
 
  private:
-  std::string NameOf(const XmlNode& node, std::map<std::string, int>* index) {
-    const std::string* name = node.Find("name");
-    if (name == nullptr || name->empty()) {
-      problems_->Add(node.line, "<{}> name is missing", node.name);
-      return "";
-    }
-    const auto [it, is_new] = index->try_emplace(*name, static_cast<int>(index->size()));
-    if (!is_new) problems_->Add(node.line, "the name of {} \"{}\" is used twice", node.name, *name);
-    return *name;
-  }
-
-  void ReadLink(const XmlNode& node) {
-    UrdfLink link;
-    link.line = node.line;
-    link.name = NameOf(node, &link_index_);
-    const UrdfValues values(LinkElement(link.name), problems_);
-    for (const XmlNode& child : node.children) {
-      if (child.name == "inertial") ReadInertial(child, values, &link);
-      if (child.name == "collision") ReadCollision(child, values, &link);
-    }
-    link_index_[link.name] = static_cast<int>(file_.links.size());
-    file_.links.push_back(std::move(link));
-  }
-
-  void ReadInertial(const XmlNode& node, const UrdfValues& values, UrdfLink* link) {
-    if (link->inertial) return values.Add(node.line, "a second <inertial>; allowed is one");
-    UrdfInertial in;
-    in.line = node.line;
-    in.X_LI = values.Origin(node);
-    const XmlNode* mass = node.Child("mass");
-    const XmlNode* inertia = node.Child("inertia");
-    if (mass == nullptr) values.Add(node.line, "<inertial> has no <mass>");
-    if (inertia == nullptr) values.Add(node.line, "<inertial> has no <inertia>");
-    if (mass != nullptr) in.mass = values.Number(*mass, "value");
-    if (inertia != nullptr) {
-      in.inertia_line = inertia->line;
-      const double xx = values.Number(*inertia, "ixx"), xy = values.Number(*inertia, "ixy"),
-                   xz = values.Number(*inertia, "ixz"), yy = values.Number(*inertia, "iyy"),
-                   yz = values.Number(*inertia, "iyz"), zz = values.Number(*inertia, "izz");
-      in.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-    }
-    link->inertial = in;
-  }
-
-  void ReadCollision(const XmlNode& node, const UrdfValues& values, UrdfLink* link) {
-    UrdfCollision collision;
-    collision.line = node.line;
-    collision.X_LG = values.Origin(node);
-    const XmlNode* geometry = node.Child("geometry");
-    if (geometry == nullptr || geometry->children.empty())
-      return values.Add(node.line,
-                        "<collision> has no <geometry> with a shape; allowed are sphere, box, "
-                        "cylinder, mesh");
-    ReadGeometry(geometry->children.front(), values, &collision.geometry);
-    link->collisions.push_back(std::move(collision));
-  }
-
-  void ReadGeometry(const XmlNode& node, const UrdfValues& values, UrdfGeometry* out) {
-    out->line = node.line;
-    if (node.name == "sphere") {
-      out->kind = UrdfGeometry::Kind::kSphere;
-      out->radius = values.Positive(node, "radius");
-    } else if (node.name == "cylinder") {
-      out->kind = UrdfGeometry::Kind::kCylinder;
-      out->radius = values.Positive(node, "radius");
-      out->length = values.Positive(node, "length");
-    } else if (node.name == "box") {
-      out->kind = UrdfGeometry::Kind::kBox;
-      const std::size_t before = problems_->count();
-      out->size = values.Vector(node, "size");
-      if (problems_->count() == before && !(out->size.minCoeff() > 0))
-        values.Add(node.line, "<box> size = {:.6g}; must be > 0", out->size.minCoeff());
-    } else if (node.name == "mesh") {
-      ReadMesh(node, values, out);
-    } else {
-      values.Add(node.line,
-                 "<collision> <geometry> <{}> is unknown; allowed are sphere, box, cylinder (read "
-                 "as a capsule), mesh",
-                 node.name);
-    }
-  }
-
-  void ReadMesh(const XmlNode& node, const UrdfValues& values, UrdfGeometry* out) {
-    out->kind = UrdfGeometry::Kind::kMesh;
-    out->scale = values.Vector(node, "scale", Vector3d::Ones());
-    if (out->scale.cwiseAbs().minCoeff() == 0)
-      values.Add(node.line, "<mesh> scale = {}; no number may be 0", Shown(*node.Find("scale")));
-    const std::string* name = node.Find("filename");
-    if (name == nullptr || name->empty())
-      return values.Add(node.line, "<mesh> filename is missing");
-    out->mesh_name = *name;
-    const std::string_view text = *name;
-    if (text.starts_with("file://")) {
-      out->mesh = text.substr(7);
-    } else if (text.starts_with("package://")) {
-      out->mesh = InPackage(text.substr(10));
-      if (out->mesh.empty())
-        values.Add(node.line,
-                   "<mesh> filename = {}: the package is in no directory above the file and not in "
-                   "$ROS_PACKAGE_PATH",
-                   Shown(*name));
-    } else if (text.find("://") != std::string_view::npos) {
-      values.Add(node.line,
-                 "<mesh> filename = {}; allowed are a path relative to the URDF file, an absolute "
-                 "path, file:// or package://",
-                 Shown(*name));
-    } else {
-      out->mesh = path_.parent_path() / *name;
-    }
-  }
-
-  /// package://NAME/REST: the nearest directory above the file that is called NAME or holds it,
-  /// else a directory of $ROS_PACKAGE_PATH; a package directory given as such may have another
-  /// name.
-  fs::path InPackage(std::string_view rest) const {
-    const std::size_t slash = rest.find('/');
-    if (slash == std::string_view::npos || slash == 0) return {};
-    const fs::path package = rest.substr(0, slash), inside = rest.substr(slash + 1);
-    std::error_code ignored;
-    fs::path directory = fs::absolute(path_, ignored).lexically_normal().parent_path();
-    for (; !directory.empty(); directory = directory.parent_path()) {
-      if (directory.filename() == package) return directory / inside;
-      if (fs::is_directory(directory / package, ignored)) return directory / package / inside;
-      if (fs::is_regular_file(directory / "package.xml", ignored) &&
-          fs::is_regular_file(directory / inside, ignored))
-        return directory / inside;
-      if (directory == directory.root_path()) break;
-    }
-    const char* roots = std::getenv("ROS_PACKAGE_PATH");
-    std::istringstream list(roots == nullptr ? "" : roots);
-    for (std::string root; std::getline(list, root, ':');) {
-      if (fs::path(root).filename() == package) return fs::path(root) / inside;
-      if (fs::is_directory(fs::path(root) / package, ignored)) return root / package / inside;
-    }
-    return {};
-  }
-
-  int LinkOf(const XmlNode& joint, const char* end, const UrdfValues& values) {
-    const XmlNode* node = joint.Child(end);
-    const std::string* name = node == nullptr ? nullptr : node->Find("link");
-    if (name == nullptr) {
-      values.Add(joint.line, "<{}> link is missing", end);
-      return -1;
-    }
-    const auto it = link_index_.find(*name);
-    if (it == link_index_.end()) {
-      values.Add(node->line, "<{}> link = {}: there is no such link", end, Shown(*name));
-      return -1;
-    }
-    return it->second;
-  }
-
-  void ReadJoint(const XmlNode& node) {
-    UrdfJoint joint;
-    joint.line = node.line;
-    joint.name = NameOf(node, &joint_index_);
-    const UrdfValues values(JointElement(joint.name), problems_);
-    const std::string* type = node.Find("type");
-    if (type == nullptr) values.Add(node.line, "type is missing");
-    joint.type_name = type == nullptr ? "fixed" : *type;
-    using Type = UrdfJoint::Type;
-    joint.type = joint.type_name == "revolute"     ? Type::kRevolute
-                 : joint.type_name == "continuous" ? Type::kContinuous
-                 : joint.type_name == "fixed"      ? Type::kFixed
-                 : joint.type_name == "prismatic"  ? Type::kPrismatic
-                                                   : Type::kOther;
-    joint.parent = LinkOf(node, "parent", values);
-    joint.child = LinkOf(node, "child", values);
-    joint.X_PJ = values.Origin(node);
-    if (joint.type != Type::kFixed) ReadMotion(node, values, &joint);
-    file_.joints.push_back(std::move(joint));
-  }
-
-  void ReadMotion(const XmlNode& node, const UrdfValues& values, UrdfJoint* joint) {
-    if (const XmlNode* axis = node.Child("axis")) {
-      const std::size_t before = problems_->count();
-      const Vector3d v = values.Vector(*axis, "xyz");
-      if (v.norm() > 1e-6)
-        joint->axis = v / v.norm();
-      else if (problems_->count() == before)
-        values.Add(axis->line, "<axis> = ({}, {}, {}); must not be zero", v.x(), v.y(), v.z());
-    }
-    if (const XmlNode* limit = node.Child("limit")) {
-      joint->limit_line = limit->line;
-      joint->lower = values.Number(*limit, "lower", 0.0);
-      joint->upper = values.Number(*limit, "upper", 0.0);
-      joint->effort = values.Number(*limit, "effort");
-    }
-    if (const XmlNode* dynamics = node.Child("dynamics"); dynamics && dynamics->Find("damping")) {
-      joint->damping = values.Number(*dynamics, "damping");
-      if (!(*joint->damping >= 0))
-        values.Add(dynamics->line, "<dynamics> damping = {:.6g}; must be >= 0", *joint->damping);
-    }
-    const XmlNode* mimic = node.Child("mimic");
-    if (mimic == nullptr) return;
-    const std::string* name = mimic->Find("joint");
-    if (name == nullptr) return values.Add(mimic->line, "<mimic> joint is missing");
-    joint->mimic = {*name, values.Number(*mimic, "multiplier", 1.0),
-                    values.Number(*mimic, "offset", 0.0)};
-  }
-
-  /// Every link is the child of at most one joint, and all hang from one root.
-  void CheckTree() {
-    for (std::size_t j = 0; j < file_.joints.size(); ++j) {
-      const UrdfJoint& joint = file_.joints[j];
-      UrdfLink& child = file_.links[static_cast<std::size_t>(joint.child)];
-      if (child.parent_joint >= 0) {
-        problems_->Add(joint.line,
-                       "{} is the child of the joints \"{}\" and \"{}\"; allowed is one",
-                       LinkElement(child.name),
-                       file_.joints[static_cast<std::size_t>(child.parent_joint)].name, joint.name);
-        continue;
-      }
-      child.parent_joint = static_cast<int>(j);
-      file_.links[static_cast<std::size_t>(joint.parent)].child_joints.push_back(
-          static_cast<int>(j));
-    }
-    std::vector<int> roots;
-    for (std::size_t l = 0; l < file_.links.size(); ++l)
-      if (file_.links[l].parent_joint < 0) roots.push_back(static_cast<int>(l));
-    if (roots.empty()) return problems_->Add(0, "every link has a parent: there is no root");
-    file_.root = roots.front();
-    const std::string& root = file_.links[static_cast<std::size_t>(file_.root)].name;
-    std::set<int> reached;
-    std::vector<int> open = roots;
-    while (!open.empty()) {
-      const int l = open.back();
-      open.pop_back();
-      if (!reached.insert(l).second) continue;
-      for (const int j : file_.links[static_cast<std::size_t>(l)].child_joints)
-        open.push_back(file_.joints[static_cast<std::size_t>(j)].child);
-    }
-    for (std::size_t l = 0; l < file_.links.size(); ++l) {
-      const UrdfLink& link = file_.links[l];
-      if (static_cast<int>(l) != file_.root && link.parent_joint < 0)
-        problems_->Add(link.line, "{} is a second root beside \"{}\"; allowed is one root",
-                       LinkElement(link.name), root);
-      else if (!reached.contains(static_cast<int>(l)))
-        problems_->Add(link.line, "{} is not connected to the root \"{}\"", LinkElement(link.name),
-                       root);
-    }
-  }
-
-  const fs::path& path_;
-  Problems* problems_;
-  UrdfFile file_;
-  std::map<std::string, int> link_index_, joint_index_;
+  static inline std::mutex mutex_;
+  std::lock_guard<std::mutex> lock_;
+  console_bridge::OutputHandler* previous_;
+  std::string text_;
 };
+
+/// The model of a document that CheckUrdf found right. urdfdom goes on after an error and loses
+/// what it was about, so that any word of it refuses the file.
+urdf::ModelInterfaceSharedPtr BuildModel(const fs::path& path, const XMLElement& robot) {
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  robot.Accept(&printer);
+  CollectedLog log;
+  urdf::ModelInterfaceSharedPtr model;
+  std::string why;
+  try {
+    model = urdf::parseURDF(printer.CStr());
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  if (why.empty()) why = log.text();
+  if (!model || !why.empty())
+    throw ModelError(fmt::format("{}: not a valid URDF: {}", path.string(),
+                                 why.empty() ? "unknown reason" : why));
+  return model;
+}
+
+Vector3d ToVector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+Isometry3d ToIsometry(const urdf::Pose& pose) {
+  const urdf::Rotation& q = pose.rotation;
+  Isometry3d X = Isometry3d::Identity();
+  X.translation() = ToVector(pose.position);
+  X.linear() = Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  return X;
+}
+
+UrdfInertial ToInertial(const XMLElement& node, const urdf::Inertial& in) {
+  UrdfInertial out;
+  out.line = node.GetLineNum();
+  out.inertia_line = node.FirstChildElement("inertia")->GetLineNum();
+  out.mass = in.mass;
+  out.X_LI = ToIsometry(in.origin);
+  out.inertia << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
+  return out;
+}
+
+UrdfGeometry ToGeometry(const XMLElement& node, const urdf::Geometry& in) {
+  using Kind = UrdfGeometry::Kind;
+  UrdfGeometry out;
+  out.line = node.GetLineNum();
+  if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&in)) {
+    out.radius = sphere->radius;
+  } else if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&in)) {
+    out.kind = Kind::kCylinder;
+    out.radius = cylinder->radius;
+    out.length = cylinder->length;
+  } else if (const auto* box = dynamic_cast<const urdf::Box*>(&in)) {
+    out.kind = Kind::kBox;
+    out.size = ToVector(box->dim);
+  } else if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(&in)) {
+    out.kind = Kind::kMesh;
+    out.mesh = mesh->filename;
+    out.mesh_name = node.Attribute("written");
+    out.scale = ToVector(mesh->scale);
+  }
+  return out;
+}
+
+UrdfLink ToLink(const XMLElement& node, const urdf::Link& in) {
+  UrdfLink out;
+  out.name = in.name;
+  out.line = node.GetLineNum();
+  if (in.inertial) out.inertial = ToInertial(*node.FirstChildElement("inertial"), *in.inertial);
+  const XMLElement* collision = node.FirstChildElement("collision");
+  for (const urdf::CollisionSharedPtr& shape : in.collision_array) {
+    const XMLElement& geometry = *collision->FirstChildElement("geometry")->FirstChildElement();
+    out.collisions.push_back({collision->GetLineNum(), ToIsometry(shape->origin),
+                              ToGeometry(geometry, *shape->geometry)});
+    collision = collision->NextSiblingElement("collision");
+  }
+  return out;
+}
+
+UrdfJoint ToJoint(const XMLElement& node, const urdf::Joint& in) {
+  using Type = UrdfJoint::Type;
+  UrdfJoint out;
+  out.name = in.name;
+  out.line = node.GetLineNum();
+  out.type_name = node.Attribute("type");
+  out.type = in.type == urdf::Joint::REVOLUTE     ? Type::kRevolute
+             : in.type == urdf::Joint::CONTINUOUS ? Type::kContinuous
+             : in.type == urdf::Joint::FIXED      ? Type::kFixed
+             : in.type == urdf::Joint::PRISMATIC  ? Type::kPrismatic
+                                                  : Type::kOther;
+  out.X_PJ = ToIsometry(in.parent_to_joint_origin_transform);
+  if (const Vector3d axis = ToVector(in.axis); axis.norm() > 0) out.axis = axis / axis.norm();
+  if (in.limits) {
+    out.limit_line = node.FirstChildElement("limit")->GetLineNum();
+    out.lower = in.limits->lower;
+    out.upper = in.limits->upper;
+    out.effort = in.limits->effort;
+  }
+  if (in.dynamics) out.damping = in.dynamics->damping;
+  if (in.mimic) out.mimic = {in.mimic->joint_name, in.mimic->multiplier, in.mimic->offset};
+  return out;
+}
+
+/// urdfdom sorts by name; here links and joints stand in the order of the file.
+UrdfFile ToFile(const XMLElement& robot, const urdf::ModelInterface& model) {
+  UrdfFile file;
+  file.name = model.getName();
+  std::map<std::string, int> link_index;
+  for (const XMLElement* node = robot.FirstChildElement("link"); node != nullptr;
+       node = node->NextSiblingElement("link")) {
+    file.links.push_back(ToLink(*node, *model.getLink(node->Attribute("name"))));
+    link_index[file.links.back().name] = static_cast<int>(file.links.size()) - 1;
+  }
+  for (const XMLElement* node = robot.FirstChildElement("joint"); node != nullptr;
+       node = node->NextSiblingElement("joint")) {
+    const urdf::Joint& in = *model.getJoint(node->Attribute("name"));
+    UrdfJoint joint = ToJoint(*node, in);
+    joint.parent = link_index.at(in.parent_link_name);
+    joint.child = link_index.at(in.child_link_name);
+    const int j = static_cast<int>(file.joints.size());
+    file.links[static_cast<std::size_t>(joint.parent)].child_joints.push_back(j);
+    file.links[static_cast<std::size_t>(joint.child)].parent_joint = j;
+    file.joints.push_back(std::move(joint));
+  }
+  file.root = link_index.at(model.getRoot()->name);
+  return file;
+}
 
 }  // namespace
 
@@ -315,20 +195,23 @@ int UrdfFile::FindJoint(const std::string& joint) const {
   return it == joints.end() ? -1 : static_cast<int>(it - joints.begin());
 }
 
-UrdfFile ReadUrdf(const std::filesystem::path& path, Problems* problems) {
+UrdfFile ReadUrdf(const fs::path& path, Problems* problems) {
   const std::string text = ReadText(path);
-  XmlNode root;
+  tinyxml2::XMLDocument document;
+  XMLElement* robot = nullptr;
   try {
-    root = ParseXml(text);
+    robot = ParseXml(text, &document);
   } catch (const XmlError& error) {
     throw ModelError(
         fmt::format("{}:{}: not a valid URDF: {}", path.string(), error.line(), error.what()));
   }
-  if (root.name != "robot")
+  if (robot->Name() != std::string_view("robot"))
     throw ModelError(
         fmt::format("{}:{}: not a valid URDF: the root element is <{}>; must be <robot>",
-                    path.string(), root.line, root.name));
-  return Reader(path, problems).Read(root);
+                    path.string(), robot->GetLineNum(), robot->Name()));
+  CheckUrdf(path, robot, problems);
+  if (!problems->empty()) return {};
+  return ToFile(*robot, *BuildModel(path, *robot));
 }
 
 }  // namespace regrasp

@@ -1,8 +1,12 @@
 #pragma once
 
-/// A URDF file as plain data, each element with its line. Reading gathers every mistake of the file
-/// (unreadable numbers, missing elements, unknown names, a tree that is none) before it refuses.
-/// <visual>, <transmission>, <gazebo> and all else that is not named here are never looked at.
+/// A URDF file as plain data, each element with its line. Three steps: the file is XML
+/// (model_xml.h); every mistake of it is told at once, with its line (urdf_check.h); urdfdom builds
+/// the model from what is left, and gives every number that stands here. Alone it would not do: it
+/// names no line, stops at an element's first error or goes on without the link's shapes, needs
+/// attributes that published files lack, and forgets the order of the file and whether a damping
+/// was given. <visual>, <transmission>, <gazebo> and all else that is not named here are never
+/// looked at.
 
 #include <filesystem>
 #include <map>

@@ -1,5 +1,7 @@
 #include "core/hand/urdf_values.h"
 
+#include <fmt/ranges.h>
+
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -41,82 +43,74 @@ std::string Shown(const std::string& text) {
   return "\"" + shown + "\"";
 }
 
-bool UrdfValues::Parse(const XmlNode& node, const char* attribute, const std::string& text,
-                       int count, double* out) const {
-  const std::vector<std::string> words = Words(text);
+bool UrdfValues::Parse(Element* node, const char* attribute, const char* text, int count,
+                       double* out) const {
+  std::vector<std::string> words = Words(text);
   bool good = static_cast<int>(words.size()) == count;
   for (int i = 0; good && i < count; ++i) {
-    std::string_view word = words[static_cast<std::size_t>(i)];
-    if (word.starts_with("+")) word.remove_prefix(1);
+    std::string& word = words[static_cast<std::size_t>(i)];
+    if (word.starts_with("+")) word.erase(0, 1);
     const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), out[i]);
     good = error == std::errc() && rest == word.data() + word.size() && std::isfinite(out[i]);
   }
-  if (!good)
-    Add(node.line, "<{}> {} = {}; must be {}{}", node.name, attribute, Shown(text),
+  if (good)
+    node->SetAttribute(attribute, fmt::format("{}", fmt::join(words, " ")).c_str());
+  else
+    Add(node->GetLineNum(), "<{}> {} = {}; must be {}{}", node->Name(), attribute, Shown(text),
         count == 1 ? "a finite number" : fmt::format("{} finite numbers", count),
         Hint(attribute, words, text, count));
   return good;
 }
 
-double UrdfValues::Number(const XmlNode& node, const char* attribute,
+double UrdfValues::Number(Element* node, const char* attribute,
                           std::optional<double> otherwise) const {
-  const std::string* text = node.Find(attribute);
+  const char* text = node->Attribute(attribute);
   double value = otherwise.value_or(0);
   if (text != nullptr) {
-    if (!Parse(node, attribute, *text, 1, &value)) return otherwise.value_or(0);
+    if (!Parse(node, attribute, text, 1, &value)) return otherwise.value_or(0);
   } else if (!otherwise) {
-    Add(node.line, "<{}> {} is missing", node.name, attribute);
+    Add(node->GetLineNum(), "<{}> {} is missing", node->Name(), attribute);
   }
   return value;
 }
 
-double UrdfValues::Positive(const XmlNode& node, const char* attribute) const {
-  const std::string* text = node.Find(attribute);
+double UrdfValues::Positive(Element* node, const char* attribute) const {
+  const char* text = node->Attribute(attribute);
   double value = 1;
   if (text == nullptr) {
-    Add(node.line, "<{}> {} is missing", node.name, attribute);
-  } else if (Parse(node, attribute, *text, 1, &value) && !(value > 0)) {
-    Add(node.line, "<{}> {} = {:.6g}; must be > 0", node.name, attribute, value);
+    Add(node->GetLineNum(), "<{}> {} is missing", node->Name(), attribute);
+  } else if (Parse(node, attribute, text, 1, &value) && !(value > 0)) {
+    Add(node->GetLineNum(), "<{}> {} = {:.6g}; must be > 0", node->Name(), attribute, value);
     value = 1;
   }
   return value;
 }
 
-Vector3d UrdfValues::Vector(const XmlNode& node, const char* attribute,
+Vector3d UrdfValues::Vector(Element* node, const char* attribute,
                             std::optional<Vector3d> otherwise) const {
-  const std::string* text = node.Find(attribute);
+  const char* text = node->Attribute(attribute);
   Vector3d value = otherwise.value_or(Vector3d::Zero());
   if (text != nullptr) {
     Vector3d read;
-    if (Parse(node, attribute, *text, 3, read.data())) value = read;
+    if (Parse(node, attribute, text, 3, read.data())) value = read;
   } else if (!otherwise) {
-    Add(node.line, "<{}> {} is missing", node.name, attribute);
+    Add(node->GetLineNum(), "<{}> {} is missing", node->Name(), attribute);
   }
   return value;
 }
 
-Isometry3d UrdfValues::Origin(const XmlNode& node) const {
-  Isometry3d X = Isometry3d::Identity();
-  const XmlNode* origin = node.Child("origin");
-  if (origin == nullptr) return X;
-  Vector3d p = Vector(*origin, "xyz", Vector3d::Zero());
-  const Vector3d rpy = Vector(*origin, "rpy", Vector3d::Zero());
+void UrdfValues::Origin(Element* node) const {
+  Element* origin = node->FirstChildElement("origin");
+  if (origin == nullptr) return;
+  if (origin->Attribute("quat_xyzw") != nullptr)
+    Add(origin->GetLineNum(), "<{}> <origin> quat_xyzw is not of URDF 1.0; must be rpy [rad]",
+        node->Name());
+  const Vector3d p = Vector(origin, "xyz", Vector3d::Zero());
+  Vector(origin, "rpy", Vector3d::Zero());
   for (const double c : p)
-    if (std::abs(c) > kMaxModelSize) {
-      Add(origin->line, "<{}> <origin> xyz = {:.6g}; allowed {:g} .. {:g} m", node.name, c,
-          -kMaxModelSize, kMaxModelSize);
-      p.setZero();
-    }
-  // The half angles, as every reader of the format forms the quaternion.
-  const Vector3d h = rpy / 2;
-  const Vector3d c(std::cos(h.x()), std::cos(h.y()), std::cos(h.z()));
-  const Vector3d s(std::sin(h.x()), std::sin(h.y()), std::sin(h.z()));
-  const Quaterniond q(
-      c.x() * c.y() * c.z() + s.x() * s.y() * s.z(), s.x() * c.y() * c.z() - c.x() * s.y() * s.z(),
-      c.x() * s.y() * c.z() + s.x() * c.y() * s.z(), c.x() * c.y() * s.z() - s.x() * s.y() * c.z());
-  X.linear() = q.normalized().normalized().toRotationMatrix();
-  X.translation() = p;
-  return X;
+    if (std::abs(c) > kMaxModelSize)
+      Add(origin->GetLineNum(), "<{}> <origin> xyz = {:.6g}; allowed {:g} .. {:g} m", node->Name(),
+          c, -kMaxModelSize, kMaxModelSize);
 }
 
 }  // namespace regrasp

@@ -1,14 +1,17 @@
 #pragma once
 
-/// Numbers, vectors and poses of URDF attributes. Each reader adds a problem that names element,
-/// attribute, value and what is allowed, and then gives a harmless value. Used only by the loaders.
+/// Checks of the attributes of a URDF element. Each adds a problem that names element, attribute,
+/// value and what is allowed, and then gives a harmless value. What is right is written back in the
+/// form that every reader of the format takes: numbers with one space between. Used only by the
+/// loaders.
+
+#include <tinyxml2.h>
 
 #include <optional>
 #include <string>
 
 #include "core/common/frames.h"
 #include "core/hand/problems.h"
-#include "core/hand/xml.h"
 
 namespace regrasp {
 
@@ -19,6 +22,8 @@ std::string Shown(const std::string& text);
 
 class UrdfValues {
  public:
+  using Element = tinyxml2::XMLElement;
+
   /// `element`: what the message names, e.g. `link "a1"`.
   UrdfValues(std::string element, Problems* problems)
       : element_(std::move(element)), problems_(problems) {}
@@ -30,21 +35,17 @@ class UrdfValues {
 
   /// A finite number; `otherwise` where the attribute is missing, a problem where that is not
   /// given.
-  double Number(const XmlNode& node, const char* attribute,
-                std::optional<double> otherwise = {}) const;
+  double Number(Element* node, const char* attribute, std::optional<double> otherwise = {}) const;
   /// A number > 0.
-  double Positive(const XmlNode& node, const char* attribute) const;
+  double Positive(Element* node, const char* attribute) const;
   /// Three finite numbers.
-  Vector3d Vector(const XmlNode& node, const char* attribute,
+  Vector3d Vector(Element* node, const char* attribute,
                   std::optional<Vector3d> otherwise = {}) const;
-  /// The pose of <origin xyz rpy> below `node`; identity where there is none.
-  Isometry3d Origin(const XmlNode& node) const;
-
-  const std::string& element() const { return element_; }
+  /// The numbers of <origin xyz rpy> below `node`, if there is one.
+  void Origin(Element* node) const;
 
  private:
-  bool Parse(const XmlNode& node, const char* attribute, const std::string& text, int count,
-             double* out) const;
+  bool Parse(Element* node, const char* attribute, const char* text, int count, double* out) const;
 
   std::string element_;
   Problems* problems_;

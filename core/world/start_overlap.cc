@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/hand/mesh.h"
 #include "core/world/surface_mesh.h"
 
 namespace regrasp {
@@ -38,24 +39,10 @@ class ObjectDistance {
     }
     const double far = 2 * object_.bounding_radius + p_O.norm();
     const double distance = surface_->ClosestToSegment(p_O, p_O, far)->distance;
-    return Inside(p_O) ? -distance : distance;
+    return IsInside(object_.vertices_O, object_.triangles, p_O) ? -distance : distance;
   }
 
  private:
-  /// The solid angle under which the surface is seen is 4 pi from inside, 0 from outside
-  /// [Van Oosterom, Strackee 1983].
-  bool Inside(const Vector3d& p) const {
-    double angle = 0;
-    for (const Eigen::Vector3i& t : object_.triangles) {
-      const Vector3d a = object_.vertices_O[t[0]] - p, b = object_.vertices_O[t[1]] - p,
-                     c = object_.vertices_O[t[2]] - p;
-      const double la = a.norm(), lb = b.norm(), lc = c.norm();
-      angle += 2 * std::atan2(a.dot(b.cross(c)),
-                              la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-    }
-    return angle > 2 * M_PI;
-  }
-
   const ObjectModel& object_;
   std::optional<SurfaceMesh> surface_;
 };

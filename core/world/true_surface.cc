@@ -2,13 +2,17 @@
 
 #include <algorithm>
 
+#include "core/hand/mesh.h"
+
 namespace regrasp {
 
 TrueSurface::TrueSurface(const ObjectModel& object)
     : kind_(object.kind),
       radius_(object.radius),
       half_length_(object.half_length),
-      half_extents_(object.half_extents) {
+      half_extents_(object.half_extents),
+      vertices_O_(object.vertices_O),
+      triangles_(object.triangles) {
   if (kind_ == ObjectModel::Kind::kMesh) mesh_.emplace(object.vertices_O, object.triangles);
 }
 
@@ -33,9 +37,8 @@ TrueSurface::Nearest TrueSurface::At(const Vector3d& p) const {
       constexpr double kAnywhere = 1.0;  // [m]
       const auto closest = mesh_->ClosestToSegment(p, p, kAnywhere);
       if (!closest) return {kAnywhere, Vector3d::UnitZ()};
-      const Vector3d gap = p - closest->p_OSurface;
-      const bool outside = gap.dot(closest->face_normal_O) > 0;
-      return {outside ? closest->distance : -closest->distance, closest->face_normal_O};
+      const bool inside = IsInside(vertices_O_, triangles_, p);
+      return {inside ? -closest->distance : closest->distance, closest->face_normal_O};
     }
   }
   return {};

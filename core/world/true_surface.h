@@ -3,6 +3,7 @@
 /// The object's true surface, for judging what was felt of it.
 
 #include <optional>
+#include <vector>
 
 #include "core/hand/object_model.h"
 #include "core/world/surface_mesh.h"
@@ -17,14 +18,17 @@ class TrueSurface {
     double distance = 0;                    ///< signed, positive outside [m]
     Vector3d normal_O = Vector3d::UnitZ();  ///< outward, of the surface there
   };
-  /// The surface nearest to a point in O. Allocates nothing.
+  /// The surface nearest to a point in O; inside overlapping pieces, that of the nearest piece.
+  /// Takes time in proportion to a mesh's triangles. Allocates nothing.
   Nearest At(const Vector3d& p_O) const;
 
  private:
   ObjectModel::Kind kind_;
   double radius_, half_length_;
   Vector3d half_extents_;
-  std::optional<SurfaceMesh> mesh_;
+  std::vector<Vector3d> vertices_O_;
+  std::vector<Eigen::Vector3i> triangles_;
+  std::optional<SurfaceMesh> mesh_;  // of both
 };
 
 }  // namespace regrasp

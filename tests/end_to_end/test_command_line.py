@@ -85,7 +85,7 @@ class Start(Case):
 
     def test_links_neither_simulation_nor_pictures(self):
         libraries = subprocess.run(["ldd", str(REGRASP)], capture_output=True, text=True, check=True).stdout
-        for name in ("opencv", "libode", "urdfdom", "assimp"):
+        for name in ("opencv", "libode", "urdfdom", "tinyxml", "assimp"):
             self.assertNotIn(name, libraries)
 
     def test_a_full_disk_is_an_io_error(self):

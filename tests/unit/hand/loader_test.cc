@@ -200,8 +200,9 @@ TEST_F(LoaderTest, RefusesBadObjects) {
        {"ball.urdf", "link \"object\"", "<sphere> radius", "> 0"}},
       {"radius=\"0.025\"", "radius=\"25\"", {"ball.urdf", "bounding radius", "25", "0.001 .. 1"}},
       {"value=\"0.08\"", "value=\"nan\"", {"ball.urdf"}},
-      {"<collision>", "<collision><origin xyz=\"0 0 0.01\"/>", {"ball.urdf", "centre of mass"}},
-      {"<inertial>", "<inertial><origin xyz=\"0 0 0.01\"/>", {"ball.urdf", "centre of mass"}},
+      {"<inertial>",
+       "<inertial><origin xyz=\"0 0 0.03\"/>",
+       {"ball.urdf", "centre of mass", "outside of the shape"}},
       {"</robot>",
        "<link name=\"b\"/><joint name=\"j\" type=\"fixed\"><parent link=\"object\"/><child "
        "link=\"b\"/></joint></robot>",

@@ -101,14 +101,38 @@ TEST_F(MalformedTest, Hands) {
       {"<link name=\"upper\">", "<link name=\"tip\">", {"mini.urdf:8", "\"tip\" is used twice"}},
       {"</link>\n  <link name=\"tip\">",
        "\n  <link name=\"tip\">",
-       {"mini.urdf:16", "not a valid URDF"}},
+       {"mini.urdf:3", "not a valid URDF", "<link> is not closed"}},
       {"<robot name", "<model name", {"mini.urdf", "not a valid URDF"}},
       {"\"mini\"", "\"mini", {"mini.urdf:1", "not a valid URDF", "does not end"}},
       {"<link name=\"palm\"/>", "<link name=\"palm&x;\"/>", {"mini.urdf:2", "entity \"&x;\""}},
       {"<robot name",
        "<!DOCTYPE r [<!ENTITY a \"b\">]><robot name",
        {"mini.urdf:1", "internal subset"}},
+      {"<robot name", "<!DOCTYPE robot><robot name", {}},
+      {"<robot name",
+       "<!-- a --><?xml version=\"1.0\"?><robot name",
+       {"mini.urdf:1", "before the first"}},
+      {"<robot name", "text <robot name", {"mini.urdf:1", "outside of the root"}},
+      {"</robot>", "</robot><robot/>", {"mini.urdf:16", "second root"}},
+      {"</robot>", "</robot></robot><link/>", {"mini.urdf", "a closing tag too many"}},
+      {"</robot>", "</robot>text", {"mini.urdf:16", "outside of the root"}},
+      {"</robot>", "<!-- </robot>", {"mini.urdf:16", "a comment does not end"}},
+      {"</robot>", "<link name=\"b\"</robot>", {"mini.urdf:16", "not a valid URDF"}},
+      {"<link name=\"palm\"/>", "<link name=\"palm\" name=\"p\"/>", {"mini.urdf:2", "given twice"}},
+      {"<link name=\"palm\"/>", "<link name=palm/>", {"mini.urdf:2", "no quoted value"}},
+      {"<robot name", "<robot version=\"2.0\" name", {"mini.urdf:1", "version = \"2.0\"", "1.0"}},
+      {"<origin xyz=\"0 0 0.1\"/>",
+       "<origin quat_xyzw=\"0 0 0 1\"/>",
+       {"mini.urdf:12", "quat_xyzw", "rpy"}},
+      {"type=\"revolute\"", "type=\"screw\"", {"mini.urdf:12", "\"screw\"", "revolute and fixed"}},
+      {"<box size=\"0.01 0.01 0.04\"/>",
+       "<mesh filename=\"model://nowhere/b.obj\"/>",
+       {"mini.urdf:6", "model://nowhere/b.obj", "$GAZEBO_MODEL_PATH"}},
       {"<link name=\"palm\"/>", "<link name=\"palm\"/>\xff text", {}},
+      // What other readers of the format trip over.
+      {"size=\"0.01 0.01 0.04\"", "size=\" 0.01\n\t+0.01  4e-2 \"", {}},
+      {" velocity=\"10\"", "", {}},
+      {"<dynamics damping=\"0.05\"/>", "<dynamics friction=\"0,1\" damping=\"0.05\"/>", {}},
   };
   for (const Row& row : rows) {
     SCOPED_TRACE(std::string(row.from) + " -> " + row.to);
@@ -175,6 +199,28 @@ TEST_F(MalformedTest, NothingAfterAZeroByteIsBelieved) {
   text.insert(20, 1, '\0');
   Write("hands/mini.urdf", text);
   ExpectAll({"mini.urdf", "zero byte"});
+}
+
+TEST_F(MalformedTest, TextInTwoByteUnitsIsNamed) {
+  Write("hands/mini.urdf", std::string("\xff\xfe<\0r\0", 6));
+  ExpectAll({"mini.urdf:1", "UTF-16", "UTF-8"});
+  Write("hands/mini.urdf", std::string("\xef\xbb\xbf") + kHandUrdf);
+  EXPECT_NO_THROW(Load());
+}
+
+TEST_F(MalformedTest, ElementsAndAttributesAreCounted) {
+  std::string text = "<robot name=\"mini\">";
+  for (int i = 0; i < 100001; ++i) text += "<a/>";
+  Write("hands/mini.urdf", text + "</robot>");
+  ExpectAll({"mini.urdf:1", "more than 100000 elements"});
+  text = "<robot name=\"mini\"";
+  for (int i = 0; i < 300; ++i) text += " a" + std::to_string(i) + " = '1'\n";
+  Write("hands/mini.urdf", text + "/>");
+  ExpectAll({"mini.urdf:200", "more than 200 attributes"});
+  // A line of "=" in a comment is none.
+  Write("hands/mini.urdf",
+        "<!-- " + std::string(500, '=') + " it's \"quoted\" -->" + std::string(kHandUrdf));
+  EXPECT_NO_THROW(Load());
 }
 
 TEST_F(MalformedTest, DeepFilesAreRefusedWithoutRecursion) {

@@ -1,0 +1,71 @@
+#include "core/hand/mesh_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+namespace regrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// NAME/REST; a package directory given as such may have another name.
+fs::path InPackage(const fs::path& urdf, std::string_view name, const char* variable) {
+  const std::size_t slash = name.find('/');
+  if (slash == std::string_view::npos || slash == 0) return {};
+  const fs::path package = name.substr(0, slash), inside = name.substr(slash + 1);
+  std::error_code ignored;
+  fs::path directory = fs::absolute(urdf, ignored).lexically_normal().parent_path();
+  for (; !directory.empty(); directory = directory.parent_path()) {
+    if (directory.filename() == package) return directory / inside;
+    if (fs::is_directory(directory / package, ignored)) return directory / package / inside;
+    if (fs::is_regular_file(directory / "package.xml", ignored) &&
+        fs::is_regular_file(directory / inside, ignored))
+      return directory / inside;
+    if (directory == directory.root_path()) break;
+  }
+  const char* roots = std::getenv(variable);
+  std::istringstream list(roots == nullptr ? "" : roots);
+  for (std::string root; std::getline(list, root, ':');) {
+    if (fs::path(root).filename() == package) return fs::path(root) / inside;
+    if (fs::is_directory(fs::path(root) / package, ignored)) return root / package / inside;
+  }
+  return {};
+}
+
+}  // namespace
+
+fs::path ResolveMesh(const fs::path& urdf, const std::string& name, std::string* why) {
+  constexpr std::string_view kFile = "file://", kPackage = "package://", kModel = "model://";
+  const std::string_view text = name;
+  if (text.starts_with(kFile)) return text.substr(kFile.size());
+  for (const auto& [scheme, variable] :
+       {std::pair{kPackage, "ROS_PACKAGE_PATH"}, std::pair{kModel, "GAZEBO_MODEL_PATH"}}) {
+    if (!text.starts_with(scheme)) continue;
+    const fs::path file = InPackage(urdf, text.substr(scheme.size()), variable);
+    if (file.empty())
+      *why = fmt::format("the {} is in no directory above the file and not in ${}",
+                         scheme == kModel ? "model" : "package", variable);
+    return file;
+  }
+  if (text.find("://") != std::string_view::npos) {
+    *why =
+        "allowed are a path relative to the URDF file, an absolute path, file://, package:// or "
+        "model://";
+    return {};
+  }
+  if (text.find('\\') != std::string_view::npos) {
+    std::string slashes = name;
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    std::error_code ignored;
+    const fs::path file = urdf.parent_path() / slashes;
+    if (fs::is_regular_file(file, ignored)) return file;
+  }
+  return urdf.parent_path() / name;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,18 @@
+#pragma once
+
+/// Where the mesh file is that a URDF names.
+
+#include <filesystem>
+#include <string>
+
+namespace regrasp {
+
+/// The file behind `name`, written in the URDF file `urdf`: a path (relative to the URDF file, or
+/// absolute), file://PATH, package://NAME/REST or model://NAME/REST. A package is the nearest
+/// directory above the URDF file that is called NAME or holds one of that name, else a directory of
+/// $ROS_PACKAGE_PATH (model://: of $GAZEBO_MODEL_PATH). Whether the file is there is not looked at.
+/// An empty path where nothing can be meant: then `why` says what is allowed.
+std::filesystem::path ResolveMesh(const std::filesystem::path& urdf, const std::string& name,
+                                  std::string* why);
+
+}  // namespace regrasp
