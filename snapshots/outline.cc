@@ -16,9 +16,9 @@ constexpr double kSharp =
 
 /// Rings about z from the lower to the upper pole; `half_length` pulls the two halves of a sphere
 /// apart.
-SurfaceMesh RoundMesh(double radius, double half_length) {
+ObjectMesh RoundMesh(double radius, double half_length) {
   constexpr int kAround = 72, kUp = 36;
-  SurfaceMesh mesh;
+  ObjectMesh mesh;
   for (int i = 0; i <= kUp; ++i) {
     const double latitude = std::numbers::pi * (static_cast<double>(i) / kUp - 0.5);
     const double shift = 2 * i < kUp ? -half_length : 2 * i > kUp ? half_length : 0;
@@ -38,8 +38,8 @@ SurfaceMesh RoundMesh(double radius, double half_length) {
   return mesh;
 }
 
-SurfaceMesh BoxMesh(const Vector3d& h) {
-  SurfaceMesh mesh;
+ObjectMesh BoxMesh(const Vector3d& h) {
+  ObjectMesh mesh;
   for (int i = 0; i < 8; ++i)
     mesh.vertices_O.emplace_back(i & 1 ? h.x() : -h.x(), i & 2 ? h.y() : -h.y(),
                                  i & 4 ? h.z() : -h.z());
@@ -51,13 +51,13 @@ SurfaceMesh BoxMesh(const Vector3d& h) {
   return mesh;
 }
 
-Vector3d NormalOf(const SurfaceMesh& mesh, const Eigen::Vector3i& t) {
+Vector3d NormalOf(const ObjectMesh& mesh, const Eigen::Vector3i& t) {
   const Vector3d& a = mesh.vertices_O[t[0]];
   return (mesh.vertices_O[t[1]] - a).cross(mesh.vertices_O[t[2]] - a).normalized();
 }
 
 /// Every edge that two triangles share, with their normals. Vertices at one place count as one.
-std::vector<SurfaceLine> Edges(const SurfaceMesh& mesh) {
+std::vector<SurfaceLine> Edges(const ObjectMesh& mesh) {
   std::map<std::array<double, 3>, int> first_at;
   std::vector<int> same(mesh.vertices_O.size());
   for (std::size_t i = 0; i < same.size(); ++i) {
@@ -81,7 +81,7 @@ std::vector<SurfaceLine> Edges(const SurfaceMesh& mesh) {
   return edges;
 }
 
-void Cut(const SurfaceMesh& mesh, const Vector3d& n, double offset,
+void Cut(const ObjectMesh& mesh, const Vector3d& n, double offset,
          std::vector<SurfaceLine>* lines) {
   for (const auto& t : mesh.triangles) {
     std::array<Vector3d, 2> ends;
@@ -99,7 +99,7 @@ void Cut(const SurfaceMesh& mesh, const Vector3d& n, double offset,
 
 }  // namespace
 
-SurfaceMesh MeshOf(const ObjectModel& object) {
+ObjectMesh MeshOf(const ObjectModel& object) {
   switch (object.kind) {
     case ObjectModel::Kind::kSphere:
       return RoundMesh(object.radius, 0);
@@ -113,7 +113,7 @@ SurfaceMesh MeshOf(const ObjectModel& object) {
   return {object.vertices_O, object.triangles};
 }
 
-std::vector<SurfaceLine> ShapeLines(const SurfaceMesh& mesh) {
+std::vector<SurfaceLine> ShapeLines(const ObjectMesh& mesh) {
   std::vector<SurfaceLine> lines;
   for (const SurfaceLine& edge : Edges(mesh))
     if (edge.n1_O.dot(edge.n2_O) < kSharp) lines.push_back(edge);
@@ -133,7 +133,7 @@ std::vector<SurfaceLine> ShapeLines(const SurfaceMesh& mesh) {
   return lines;
 }
 
-std::vector<SurfaceLine> Silhouette(const SurfaceMesh& mesh, const Vector3d& to_viewer_O) {
+std::vector<SurfaceLine> Silhouette(const ObjectMesh& mesh, const Vector3d& to_viewer_O) {
   std::vector<SurfaceLine> lines = Edges(mesh);
   std::erase_if(lines, [&](const SurfaceLine& edge) {
     return (edge.n1_O.dot(to_viewer_O) > 0) == (edge.n2_O.dot(to_viewer_O) > 0);

@@ -9,7 +9,7 @@
 
 namespace regrasp {
 
-struct SurfaceMesh {
+struct ObjectMesh {
   std::vector<Vector3d> vertices_O;        ///< [m]
   std::vector<Eigen::Vector3i> triangles;  ///< counter-clockwise seen from outside
 };
@@ -25,13 +25,13 @@ struct SurfaceLine {
 };
 
 /// The object's own triangles, or a fine tessellation of a sphere, capsule or box.
-SurfaceMesh MeshOf(const ObjectModel& object);
+ObjectMesh MeshOf(const ObjectModel& object);
 
 /// Sharp edges, and the cuts of the surface with five planes across z and four planes through the z
 /// axis.
-std::vector<SurfaceLine> ShapeLines(const SurfaceMesh& mesh);
+std::vector<SurfaceLine> ShapeLines(const ObjectMesh& mesh);
 
 /// Edges between a face that faces a distant viewer and one that does not.
-std::vector<SurfaceLine> Silhouette(const SurfaceMesh& mesh, const Vector3d& to_viewer_O);
+std::vector<SurfaceLine> Silhouette(const ObjectMesh& mesh, const Vector3d& to_viewer_O);
 
 }  // namespace regrasp

@@ -5,6 +5,9 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/session/shape_judge.h"
+#include "core/shape/felt_mesh.h"
+#include "core/world/true_surface.h"
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
 #include "snapshots/outline.h"
@@ -73,7 +76,7 @@ View MakeView(const Vector3d& to_viewer, const Vector3d& up, Point2 centre, doub
   return view;
 }
 
-void DrawObject(Canvas* canvas, const View& view, const SurfaceMesh& mesh,
+void DrawObject(Canvas* canvas, const View& view, const ObjectMesh& mesh,
                 std::span<const SurfaceLine> lines, bool front) {
   for (const SurfaceLine& line : lines)
     if (line.FacesViewer(view.ToViewer()) == front)
@@ -84,13 +87,70 @@ void DrawObject(Canvas* canvas, const View& view, const SurfaceMesh& mesh,
     canvas->Line(view.At(line.a_O), view.At(line.b_O), {Colour{120, 120, 120}, 2});
 }
 
-void DrawCloud(Canvas* canvas, const View& view, const Cloud& cloud, const SurfaceMesh& mesh,
-               std::span<const SurfaceLine> lines, const std::optional<SphereFit>& fit,
-               double size) {
+/// The felt surface, and by how much each vertex is off the true one [m].
+struct FeltPicture {
+  FeltMesh mesh;
+  std::vector<double> errors;
+  double scale = 0;  ///< error that has the full colour [m]
+  ShapeErrors judged;
+};
+
+constexpr int kDivisions = 5;
+constexpr double kKnown = 0.2;  // farther from what was felt the surface is not drawn [rad]
+
+FeltPicture PictureOf(const FeltSurface& felt, const ObjectModel& object) {
+  FeltPicture picture;
+  const TrueSurface truth(object);
+  picture.mesh = MeshOf(felt, kDivisions);
+  std::vector<double> sizes;
+  for (const SurfacePoint& point : picture.mesh.vertices) {
+    picture.errors.push_back(truth.At(point.p_O).distance);
+    if (point.unknown < kKnown) sizes.push_back(std::abs(picture.errors.back()));
+  }
+  picture.judged = JudgeShape(felt, truth);
+  if (sizes.empty()) return picture;
+  const auto most = sizes.begin() + static_cast<std::ptrdiff_t>(0.95 * (sizes.size() - 1));
+  std::nth_element(sizes.begin(), most, sizes.end());
+  constexpr std::array kScales = {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 5e-3};
+  const auto scale = std::ranges::find_if(kScales, [&](double s) { return s >= *most; });
+  picture.scale = scale == kScales.end() ? kScales.back() : *scale;
+  return picture;
+}
+
+/// Blue inside the true surface, white on it, orange outside; `share` of the full colour, -1 to 1.
+Colour ErrorColour(double share) {
+  return Tint(share < 0 ? kBlue : kVermillion, 1 - std::min(1.0, std::abs(share)));
+}
+
+void DrawFelt(Canvas* canvas, const View& view, const FeltPicture& picture) {
+  for (const Eigen::Vector3i& t : picture.mesh.triangles) {
+    std::array<Point2, 3> corners;
+    Vector3d normal = Vector3d::Zero();
+    double error = 0, unknown = 0;
+    for (int k = 0; k < 3; ++k) {
+      const SurfacePoint& point = picture.mesh.vertices[t[k]];
+      corners[k] = view.At(point.p_O);
+      normal += point.normal_O;
+      error += picture.errors[t[k]] / 3;
+      unknown = std::max(unknown, point.unknown);
+    }
+    const double facing = normal.normalized().dot(view.ToViewer());
+    if (unknown > kKnown || facing <= 0) continue;
+    // A little shade, so that the shape is seen.
+    const Colour colour = Shade(ErrorColour(error / picture.scale), 0.25 * (1 - facing));
+    canvas->Polygon(corners, colour);
+    for (int k = 0; k < 3; ++k) canvas->Line(corners[k], corners[(k + 1) % 3], {colour, 1});
+  }
+}
+
+void DrawCloud(Canvas* canvas, const View& view, const Cloud& cloud, const ObjectMesh& mesh,
+               std::span<const SurfaceLine> lines, const std::optional<SphereFit>& fit, double size,
+               const FeltPicture* felt = nullptr) {
   // Far half first: far lines, far points, near lines, near points. The object's centre separates
   // them.
   const Vector3d toward = view.ToViewer();
   for (const bool front : {false, true}) {
+    if (front && felt != nullptr) DrawFelt(canvas, view, *felt);
     DrawObject(canvas, view, mesh, lines, front);
     for (std::size_t i = 0; i < cloud.points.size(); i += cloud.stride) {
       const Contact& c = cloud.points[i];
@@ -173,20 +233,55 @@ void DrawCube(Canvas* canvas, const View& view, const Axis& axis) {
   }
 }
 
+/// Scale of the colours and figures of the felt surface; returns where the column goes on.
+double DrawFeltFacts(Canvas* canvas, Point2 at, const FeltPicture& picture) {
+  canvas->Text({at.x, at.y + 10}, "surface as felt", {.size = 18, .bold = true});
+  double y = at.y + 34;
+  constexpr int kSteps = 40;
+  constexpr double kWidth = 200, kHeight = 16;
+  for (int i = 0; i < kSteps; ++i)
+    canvas->FillBox({at.x + i * kWidth / kSteps, y, kWidth / kSteps + 0.5, kHeight},
+                    ErrorColour(2.0 * i / (kSteps - 1) - 1));
+  y += kHeight + 16;
+  const double scale = picture.scale * kMm;
+  canvas->Text({at.x, y}, fmt::format("−{:.1f}", scale), {.size = 17});
+  canvas->Text({at.x + kWidth / 2, y}, "0", {.size = 17, .align_x = AlignX::kCentre});
+  canvas->Text({at.x + kWidth, y}, fmt::format("{:.1f} mm", scale),
+               {.size = 17, .align_x = AlignX::kRight});
+  y += 28;
+  const ShapeErrors& judged = picture.judged;
+  std::vector<std::string> facts = {
+      fmt::format("touched  {:.0f} % of it", 100 * judged.touched)};
+  if (judged.cells > 0) {
+    facts.push_back(fmt::format("rms error  {:.2f} mm", judged.rms_m * kMm));
+    facts.push_back(fmt::format("bias  {:.2f} mm", judged.mean_m * kMm));
+    facts.push_back(
+        fmt::format("normals off by  {:.1f}°", judged.normal_rad * 180 / std::numbers::pi));
+  }
+  for (const std::string& fact : facts) {
+    canvas->Text({at.x, y}, fact, {.size = 18});
+    y += 26;
+  }
+  return y;
+}
+
 }  // namespace
 
 void PlotContacts(std::span<const Frame> history, const HandModel& hand, const ObjectModel& object,
-                  const PlotOptions& options, const std::string& path) {
+                  const PlotOptions& options, const std::string& path, const FeltSurface* felt) {
   const auto frames = Newest(history, options.last_s, path);
   const Cloud cloud = Collect(frames, hand);
   if (cloud.points.empty())
     throw std::runtime_error(path + ": nothing to draw: no finger held the object in these frames");
   std::vector<Vector3d> points;
   for (const Contact& contact : cloud.points) points.push_back(contact.p_OC);
-  const auto fit = FitSphere(points);
+  std::optional<FeltPicture> picture;
+  if (felt != nullptr && felt->touched_cells() > 0) picture = PictureOf(*felt, object);
+  const bool round = object.kind == ObjectModel::Kind::kSphere;
+  const auto fit = round || !picture ? FitSphere(points) : std::nullopt;
 
   Canvas canvas(SizeOf(options), path);
-  const SurfaceMesh mesh = MeshOf(object);
+  const ObjectMesh mesh = MeshOf(object);
   const auto lines = ShapeLines(mesh);
   DrawTitle(
       &canvas,
@@ -220,7 +315,8 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
                          (big.height - 100) / (down.hi - down.lo));
   view.centre = {big.x + 95 + (big.width - 100) / 2, big.y + 10 + (big.height - 100) / 2};
   DrawCube(&canvas, view, axis);
-  DrawCloud(&canvas, view, cloud, mesh, lines, fit, 3.0);
+  DrawCloud(&canvas, view, cloud, mesh, lines, fit, picture ? 1.6 : 3.0,
+            picture ? &*picture : nullptr);
   canvas.Unclip();
 
   struct Flat {
@@ -269,18 +365,22 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
   std::vector<LegendEntry> shapes = {LineEntry("true outline", {Colour{120, 120, 120}, 2})};
   if (fit) shapes.push_back(LineEntry("sphere fit", {kInk, 1.8, {9, 6}}));
   y = DrawLegend(&canvas, {side, y}, "", shapes) + 18;
+  if (picture) y = DrawFeltFacts(&canvas, {side, y}, *picture) + 12;
   std::vector<std::string> facts;
-  if (fit) {
+  if (picture && !round) {
+    // The surface says more than a sphere.
+  } else if (fit) {
     facts = {fmt::format("radius  {:.2f} mm", fit->radius * kMm),
              fmt::format("rms error  {:.2f} mm", fit->rms_error * kMm),
              fmt::format("centre off by  {:.2f} mm", fit->centre.norm() * kMm)};
-    if (object.kind == ObjectModel::Kind::kSphere)
-      facts.push_back(fmt::format("true radius  {:.2f} mm", object.radius * kMm));
+    if (round) facts.push_back(fmt::format("true radius  {:.2f} mm", object.radius * kMm));
   } else {
     facts = {"the points do not", "determine a sphere"};
   }
-  canvas.Text({side, y + 10}, "least-squares sphere", {.size = 18, .bold = true});
-  y += 40;
+  if (!facts.empty()) {
+    canvas.Text({side, y + 10}, "least-squares sphere", {.size = 18, .bold = true});
+    y += 40;
+  }
   for (const std::string& fact : facts) {
     canvas.Text({side, y}, fact, {.size = 18});
     y += 26;

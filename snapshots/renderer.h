@@ -23,7 +23,7 @@ struct Body {
            b_B = Vector3d::Zero();           ///< capsule axis; equal for a sphere [m]
   double radius = 0;                         ///< capsule [m]
   Vector3d half_extents = Vector3d::Zero();  ///< box [m]
-  SurfaceMesh mesh;                          ///< mesh, in B [m]
+  ObjectMesh mesh;                           ///< mesh, in B [m]
   Colour colour, second_colour;
   int id = 0;  ///< a contour is drawn between bodies of different id
 

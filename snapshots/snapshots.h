@@ -19,6 +19,7 @@
 #include "core/hand/hand_model.h"
 #include "core/hand/object_model.h"
 #include "core/session/frame.h"
+#include "core/shape/felt_surface.h"
 
 namespace regrasp {
 
@@ -53,10 +54,12 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
                            const PlotOptions& options, const std::string& path);
 
 /// Figure 3a: the contact points as sensed, in the object's own frame as sensed, one colour per
-/// finger, in a perspective view and two orthogonal views [mm], with the object's outline and the
-/// least-squares sphere through the points.
+/// finger, in a perspective view and two orthogonal views [mm], with the object's outline. With
+/// `felt`, the perspective view shows the felt surface where it is known, its distance from the
+/// true one as colour; without, or for a sphere, the least-squares sphere through the points.
 void PlotContacts(std::span<const Frame> history, const HandModel& hand, const ObjectModel& object,
-                  const PlotOptions& options, const std::string& path);
+                  const PlotOptions& options, const std::string& path,
+                  const FeltSurface* felt = nullptr);
 
 /// Figure 1: hand, object, contacts and contact forces of one frame (the truth), seen from two
 /// sides.

@@ -200,11 +200,14 @@ std::vector<CommandSpec> ExperimentCommands() {
             "10", "paper"),
        Experiment},
       {"experiment zoo", kGroup,
-       "turn many objects by either gait, paired; which gait does better on which", nullptr,
+       "turn many objects by several gaits, paired; which does better on which", nullptr,
        WithoutObject(With(
            {Text("objects", "--objects", "NAMES", "separated by commas; zoo: all of it", "zoo"),
-            Text("gaits", "--gaits", "NAMES", "the first is what others are compared with",
-                 "returning,exploring"),
+            Text("gaits", "--gaits", "NAMES",
+                 "planned, returning (to the first contact), exploring (the paper's); the first is "
+                 "what "
+                 "others are compared with",
+                 "planned,returning"),
             Text("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
             Number("speed", "--speed", ArgKind::kNumber, "DEG_S",

@@ -80,6 +80,10 @@ void PrintRotate(Output& out, const Json& r) {
   out.Line(fmt::format("  error      at most {} mm, tilt {}{}",
                        Fixed(At(r, "max_position_error_m"), 1, 1e3),
                        Fixed(At(r, "max_tilt_rad"), 1, kDegrees), out.Degree()));
+  if (At(r, "reference_resets").is_number() && At(r, "reference_resets") != 0)
+    out.Line(
+        fmt::format("  reference  followed the object {} times, which was at most {} mm behind",
+                    Plain(At(r, "reference_resets")), Fixed(At(r, "max_lag_m"), 1, 1e3)));
 }
 
 void PrintMove(Output& out, const Json& r) {

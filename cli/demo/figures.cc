@@ -16,9 +16,8 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::int64_t kExploreChunk = 100, kRotateChunk = 50;         // [ticks]
 constexpr std::int64_t kExploreLimit = 60000, kRotateLimit = 2000000;  // [ticks]
 constexpr int kHoldSamples = 50;
-constexpr std::int64_t kHoldChunk = 20;           // a second in all: sensor noise averages out
-constexpr double kExploring = 0, kReturning = 1;  // values of gait.mode
-constexpr double kGaitWindow = 40;                // of figure 3b: its bands stay legible [s]
+constexpr std::int64_t kHoldChunk = 20;  // a second in all: sensor noise averages out
+constexpr double kGaitWindow = 40;       // of figure 3b: its bands stay legible [s]
 constexpr int kTradeoffStarts = 4;
 constexpr double kStabilityFalls = 0.02;     // more than the noise of one reading
 constexpr std::int64_t kFirstRepeat = 1000;  // seeds of the start gradients, after the run's
@@ -216,16 +215,16 @@ void Figures::Repeats(int repeats) {
       fmt::format("{} of {}, other gradient directions", rose, repeats), rose == repeats);
 }
 
-void Figures::Rotation(double mode, const std::string& name) {
-  Say("rotating by finger gait, fingers " + name);
+void Figures::Rotation(const std::string& preset, const std::string& name) {
+  Say("rotating by finger gait, " + name);
   GraspObject();
-  daemon_.Call("param.set", {{"name", "gait.mode"}, {"value", mode}});
+  daemon_.Call("param.set", {{"name", "gait.preset"}, {"value", preset}});
   GaitRecord gait;
   const Json record = daemon_.Run("rotate", {{"turns", turns_}, {"axis", kAxis_W}}, kRotateChunk,
                                   kRotateLimit, [&] { gait.Look(&daemon_); });
   measured_["rotate"][name] = record;
   measured_["rotate"][name]["gait"] = gait.ToJson();
-  const std::string claim = "turns it, fingers " + name + " (Sec. III b)";
+  const std::string claim = "turns it, " + name + " (Sec. III b)";
   if (!At(record, "angle_rad").is_number()) return Add(claim, Plain(At(record, "error")), false);
   const double degrees = record.at("angle_rad").get<double>() * kDegrees;
   const double seconds = record.at("sim_time_s");
@@ -247,9 +246,9 @@ void Figures::Rotation(double mode, const std::string& name) {
 }
 
 void Figures::Rotations() {
-  Rotation(kReturning, "returning");
-  Picture("gait", "gait-returning.png");
-  Rotation(kExploring, "exploring");
+  Rotation("planned", "planned");
+  Picture("gait", "gait-planned.png");
+  Rotation("paper", "exploring");
   Picture("contacts", "figure3a.png");
   Picture("gait", "figure3b.png", kGaitWindow);
   Picture("gait", "gait-exploring.png");

@@ -62,7 +62,7 @@ class Figures {
   void Figure2();
   void Tradeoff();
   void Repeats(int repeats);
-  void Rotation(double mode, const std::string& name);
+  void Rotation(const std::string& preset, const std::string& name);
   void Picture(const std::string& name, const std::string& file, double last_s = 0);
   void Add(const std::string& claim, const std::string& measured, bool shown) {
     claims_.push_back({claim, measured, shown});

@@ -52,7 +52,7 @@ constexpr const char* kDeviations = R"(
 | Sec. III b | S_L, S_R, S_M, S_F, S_T | the same order; the opposing finger is found from the contact normals and is always last |
 | Sec. III b | a fixed gait | a finger leaves only while the others keep a load margin of {gait.margin_min} N; contacts that let the thumb leave ({gait.margin_wanted} N) are sought first |
 | Sec. III b | the free finger explores | for at most {gait.explore_s} s, within {gait.disc_radius*1e3} mm of its first contact, from the gradient with which its last exploration ended |
-| Sec. III b | fingers slide to new contacts | they hop back to where they first touched, then slide while they explore. By default they do not explore at all (`gait.mode` 1): turning is then faster |
+| Sec. III b | fingers slide to new contacts | they hop back to where they first touched, then slide while they explore. That is `gait.preset paper`; by default they do not explore, and come back to where the surface as felt says the grasp goes on best (`planned`) |
 )";
 
 /// kDeviations with the values of `parameters`. Throws CliError(kFailed) for one that is not there.
@@ -267,6 +267,8 @@ std::string ReproductionPage(const PaperResults& r) {
               &claims);
   AddRotation(r.summaries.at("returning"), "the same, fingers return to their first contact (ours)",
               &claims);
+  AddRotation(r.summaries.at("planned"),
+              "the same, landings planned on the surface as felt (ours, the default)", &claims);
   AddGait(r.figures, &claims);
   const auto noisy = [&](const char* noise) {
     return GroupOf(sweep, {{"noise", noise}, {"estimator", "least_squares"}, {"finger", every}});

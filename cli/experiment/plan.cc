@@ -260,7 +260,8 @@ void ExpandZoo(Plan* plan) {
       Case c;
       c.name = fmt::format("{}, {}", object, gait);
       c.setting.object = object;
-      c.setting.set = {{"gait.mode", gait}};
+      c.setting.set = {{"gait.preset", gait == "planned" ? "planned" : "paper"}};
+      if (gait == "returning") c.setting.set.emplace_back("gait.mode", gait);
       c.against = fmt::format("{}, {}", object, plan->gaits.front());
       plan->cases.push_back(std::move(c));
     }
@@ -279,8 +280,8 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
   p.seeds = Integer(invocation, "seeds", zoo ? "5" : p.rotation() ? "10" : sweep ? "20" : "50");
   if (zoo) {
     p.objects = Split(invocation.Text("objects", "zoo"), ',');
-    p.gaits = Names(invocation.Text("gaits", "returning,exploring"), {"returning", "exploring"},
-                    "--gaits");
+    p.gaits = Names(invocation.Text("gaits", "planned,returning"),
+                    {"planned", "returning", "exploring"}, "--gaits");
   }
   if (p.rotation()) {
     p.subjects = Axes(invocation.Text("axis", "0,0,-1"));

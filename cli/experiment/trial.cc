@@ -154,7 +154,7 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
   }
   const bool turned = At(record, "angle_rad").is_number();
   for (const char* key : {"angle_rad", "sim_time_s", "gait_cycles", "regrasps", "dropped",
-                          "max_position_error_m", "max_tilt_rad"})
+                          "max_position_error_m", "max_tilt_rad", "max_lag_m", "reference_resets"})
     row[key] = turned ? At(record, key) : Json();
   const double angle = turned ? record.at("angle_rad").get<double>() : 0;
   const double time = turned ? record.at("sim_time_s").get<double>() : 0;

@@ -56,6 +56,8 @@ constexpr Example kExamples[] = {
     {"contacts", "regrasp --csv contacts > contacts.csv", "for a spreadsheet"},
     {"joints", "regrasp joints", "angles, torques, limits"},
     {"quality", "regrasp quality", "manipulability, stability, load margin"},
+    {"shape", "regrasp shape", "what touching has revealed of the object"},
+    {"shape", "regrasp shape -o felt.ply", "as a mesh, with what is unknown"},
     {"truth", "regrasp --json truth", "what the controller does not see"},
     {"job list", "regrasp job list", "what was done"},
     {"job show", "regrasp job show 1", "its record"},

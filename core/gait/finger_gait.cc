@@ -171,8 +171,7 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
   if (refused_finger_ >= 0) {
     std::snprintf(error_, sizeof(error_),
                   "%s may not leave: the load margin without it is %.3f N, below %.3f N",
-                  tick.hand.fingers[refused_finger_].name.c_str(), refused_margin_,
-                  tick.gait.margin_min);
+                  tick.hand.fingers[refused_finger_].name.c_str(), refused_margin_, refused_below_);
   } else {
     const int finger = manipulation_.end_finger();
     std::snprintf(error_, sizeof(error_), "the object cannot turn further: %s%s%s",
@@ -191,8 +190,7 @@ ObjectMotion FingerGait::UpdateMotion(const ControlTick& tick, ObjectWrench* wre
   if (manipulation_.end() == LocalManipulation::End::kNone) return motion;
   EndMotion(tick.gait);
   Forgive(tick, false, wrench);
-  const bool there = !request_.continuous && turned_before_ > std::abs(request_.angle_rad) - 1e-3;
-  Enter(stop_ || there ? GaitPhase::kFinish : GaitPhase::kSettle);
+  Enter(stop_ || there() ? GaitPhase::kFinish : GaitPhase::kSettle);
   return motion;
 }
 
@@ -239,7 +237,7 @@ void FingerGait::UpdateRecover(const ControlTick& tick, ObjectWrench* wrench) {
                 parameters.recovered * parameters.abort_rotation))
     return;
   Forgive(tick, true, wrench);
-  Enter(GaitPhase::kChoose);
+  Enter(there() ? GaitPhase::kFinish : GaitPhase::kChoose);
 }
 
 void FingerGait::UpdateStance(const ControlTick& tick) {

@@ -51,10 +51,10 @@ class FingerGait {
   };
   /// What happened in the last Update.
   struct Happened {
-    bool changed = false;       ///< phase, finger or phase of the regrasp
-    int refused_finger = -1;    ///< may not leave: the margin without it is too small
-    double refused_margin = 0;  ///< [N]
-    bool aborted = false;       ///< a regrasp was broken off
+    bool changed = false;     ///< phase, finger or phase of the regrasp
+    int refused_finger = -1;  ///< may not leave: the margin without it is too small
+    double refused_margin = 0, refused_below = 0;   ///< [N]
+    bool aborted = false;                           ///< a regrasp was broken off
     double error_position = 0, error_rotation = 0;  ///< object against reference, then [m, rad]
     bool regrasp_began = false, explore_began = false, explore_ended = false, regrasp_ended = false;
     template <typename V>
@@ -62,6 +62,7 @@ class FingerGait {
       v("changed", changed);
       v("refused_finger", refused_finger, v.Finger());
       v("refused_margin", refused_margin, kUnbounded);
+      v("refused_below", refused_below);
       v("aborted", aborted);
       v("error_position", error_position);
       v("error_rotation", error_rotation);
@@ -123,6 +124,7 @@ class FingerGait {
     v("refused_finger", refused_finger_, v.Finger());
     v("sought", sought_);
     v("refused_margin", refused_margin_, kUnbounded);
+    v("refused_below", refused_below_);
     v("plan", plan_);
     v("landing", landing_);
     v("room_for", room_for_, v.Finger());
@@ -150,6 +152,10 @@ class FingerGait {
     return tick.gait.plan && request_.make_room_for < 0;
   }
   double turned_so_far() const { return sign_ * turned_before_; }
+  /// The reference has turned as far as wanted, forgiven turns included.
+  bool there() const {
+    return !request_.continuous && turned_before_ > std::abs(request_.angle_rad) - 1e-3;
+  }
   double manipulation_turned() const {
     return phase_ == GaitPhase::kObjectMotion ? manipulation_.travelled() : 0.0;
   }
@@ -163,7 +169,10 @@ class FingerGait {
   void StartPlan(int finger, double reach, const ControlTick& tick);
   void EndPlan(const ControlTick& tick);
   Regrasp::Request RequestOf(const GaitStep& step, int next, const ControlTick& tick) const;
-  /// The margin without it suffices, and every other finger stands still on the object.
+  /// Least load margin without the finger at which it may leave [N].
+  double MarginNeeded(const ControlTick& tick, int finger) const;
+  /// The finger has its turn without leaving; what it lacked is kept for the report.
+  void Refuse(const ControlTick& tick, int finger);
   bool MayLeave(const ControlTick& tick, int finger) const;
   void StartRegrasp(const ControlTick& tick, int finger, const Landing& landing);
   /// The stance plan is made: its contacts are taken by those that may leave.
@@ -220,7 +229,7 @@ class FingerGait {
   int idle_cycles_ = 0;
   int refused_finger_ = -1;  // in this cycle
   bool sought_ = false;      // another stance, in this cycle
-  double refused_margin_ = 0;
+  double refused_margin_ = 0, refused_below_ = 0;
   LandingPlan plan_;
   std::array<Landing, kMaxFingers> landing_{};  // the last one of each finger
   int room_for_ = -1;                           // the finger for which the others make room now

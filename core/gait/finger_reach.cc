@@ -55,34 +55,45 @@ FingerVector Stepped(const HandModel& hand, int finger, const FingerPosture& pos
 
 }  // namespace
 
+JointChain ChainOf(const HandModel& hand, int finger) {
+  JointChain chain;
+  for (int j = hand.links[hand.fingers[finger].tip_link].parent_joint; j >= 0;
+       j = hand.links[hand.joints[j].parent_link].parent_joint)
+    chain.push_back(j);
+  std::reverse(chain.begin(), chain.end());
+  return chain;
+}
+
 FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q) {
   const Finger& model = hand.fingers[finger];
   FingerPosture posture;
   posture.q = q;
+  const JointChain chain = ChainOf(hand, finger);
+  struct Axis {
+    Vector3d axis_W, p_WJ;
+    double ratio;  // of the finger's joint `column`
+    Eigen::Index column;
+  };
+  FixedVector<Axis, kMaxLinks> axes;
   Isometry3d X_WL = Isometry3d::Identity();
-  std::array<Vector3d, kMaxFingerJoints> axis_W, p_WJ;
-  Link const* before = nullptr;
-  Isometry3d X_WBefore = X_WL;
-  for (std::size_t k = 0; k < model.joints.size(); ++k) {
-    const Joint& joint = hand.joints[model.joints[k]];
-    if (k > 0) {
-      before = &hand.links[joint.parent_link];
-      X_WBefore = X_WL;
-    }
+  for (std::size_t n = 0; n < chain.size(); ++n) {
+    const Joint& joint = hand.joints[chain[n]];
+    const int driven = joint.driver < 0 ? chain[n] : joint.driver;
+    const auto column = static_cast<Eigen::Index>(
+        std::find(model.joints.begin(), model.joints.end(), driven) - model.joints.begin());
+    if (n > 0 && n + 1 == chain.size())
+      posture.middle = BoneOf(hand.links[joint.parent_link], X_WL);
     X_WL = X_WL * joint.X_PJ;
-    axis_W[k] = X_WL.linear() * joint.axis_J;
-    p_WJ[k] = X_WL.translation();
-    X_WL.linear() =
-        X_WL.linear() *
-        Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], joint.axis_J).toRotationMatrix();
+    axes.push_back({X_WL.linear() * joint.axis_J, X_WL.translation(), joint.ratio, column});
+    const double angle = joint.driver < 0 ? q[column] : joint.ratio * q[column] + joint.offset;
+    X_WL.linear() = X_WL.linear() * Eigen::AngleAxisd(angle, joint.axis_J).toRotationMatrix();
   }
   posture.p_WF = X_WL * model.p_LF;
   posture.along_W = (posture.p_WF - X_WL.translation()).normalized();
   posture.tip = BoneOf(hand.links[model.tip_link], X_WL);
-  if (before != nullptr) posture.middle = BoneOf(*before, X_WBefore);
-  posture.J.resize(3, static_cast<Eigen::Index>(model.joints.size()));
-  for (std::size_t k = 0; k < model.joints.size(); ++k)
-    posture.J.col(static_cast<Eigen::Index>(k)) = axis_W[k].cross(posture.p_WF - p_WJ[k]);
+  posture.J = FingerJacobian::Zero(3, static_cast<Eigen::Index>(model.joints.size()));
+  for (const Axis& axis : axes)
+    posture.J.col(axis.column) += axis.ratio * axis.axis_W.cross(posture.p_WF - axis.p_WJ);
   return posture;
 }
 

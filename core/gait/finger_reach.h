@@ -3,6 +3,7 @@
 /// Where one finger can put its tip, and how far it can follow a turning object from there: inverse
 /// kinematics of a single finger, the others left out. A microsecond per step, no allocation.
 
+#include "core/common/fixed_vector.h"
 #include "core/hand/kinematics.h"
 
 namespace regrasp {
@@ -21,6 +22,10 @@ struct FingerPosture {
   Bone tip, middle;                      ///< the last two links; radius 0 for one without a capsule
   FingerJacobian J;                      ///< of the fingertip centre
 };
+
+/// All joints between palm and tip link, coupled ones too, root to tip.
+using JointChain = FixedVector<int, kMaxLinks>;
+JointChain ChainOf(const HandModel& hand, int finger);
 
 /// Forward kinematics of finger `finger` at the angles `q` [rad, root to tip].
 FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q);

@@ -42,9 +42,13 @@ void FingerGait::EndPlan(const ControlTick& tick) {
 void FingerGait::StartRegrasp(const ControlTick& tick, int finger, const Landing& landing) {
   landing_[finger] = landing;
   GaitStep step{finger, GaitObjective::kManipulability};
-  for (const GaitStep& row : order_)
-    if (row.finger == finger) step = row;
-  regrasp_.Start(RequestOf(step, plan_.request().next, tick));
+  int next = -1;
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    if (order_[k].finger != finger) continue;
+    step = order_[k];
+    if (k + 1 < order_.size()) next = order_[k + 1].finger;
+  }
+  regrasp_.Start(RequestOf(step, next, tick));
   happened_.regrasp_began = true;
   Enter(GaitPhase::kRegrasp);
 }
@@ -60,11 +64,22 @@ bool FingerGait::Unsteady(const ControlTick& tick) const {
   return false;
 }
 
-bool FingerGait::MayLeave(const ControlTick& tick, int finger) const {
+double FingerGait::MarginNeeded(const ControlTick& tick, int finger) const {
+  if (!planned(tick)) return tick.gait.margin_min;
   // Without progress it is tried with less: the load transfer is careful, and ends in time.
-  const double needed =
-      std::max(tick.gait.margin_least, tick.gait.margin_min * std::exp2(-idle_cycles_));
-  return tick.margins.without[finger] >= needed + caution_[finger];
+  return caution_[finger] +
+         std::max(tick.gait.margin_least, tick.gait.margin_min * std::exp2(-idle_cycles_));
+}
+
+bool FingerGait::MayLeave(const ControlTick& tick, int finger) const {
+  return tick.margins.without[finger] >= MarginNeeded(tick, finger);
+}
+
+void FingerGait::Refuse(const ControlTick& tick, int finger) {
+  waiting_.remove(finger);
+  refused_finger_ = happened_.refused_finger = finger;
+  refused_margin_ = happened_.refused_margin = tick.margins.without[finger];
+  refused_below_ = happened_.refused_below = MarginNeeded(tick, finger);
 }
 
 void FingerGait::EndStancePlan(const ControlTick& tick) {
@@ -121,9 +136,7 @@ void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench
                        request_.seed + static_cast<std::uint64_t>(searches_++));
     return Enter(GaitPhase::kStance);
   }
-  refused_finger_ = happened_.refused_finger = refused;
-  refused_margin_ = happened_.refused_margin = tick.margins.without[refused];
-  waiting_.remove(refused);
+  Refuse(tick, refused);
 }
 
 double FingerGait::ReserveOf(const ControlTick& tick, int finger) const {

@@ -68,13 +68,12 @@ void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {
       waiting_.remove(step.finger);
       continue;
     }
-    const bool refused = tick.margins.without[step.finger] < parameters.margin_min;
+    const bool refused = !MayLeave(tick, step.finger);
     // The margin still remembers the finger before in the air.
     if (refused && ticks_ * tick.dt < tick.gait.second_thought_s) return;
     waiting_.remove(step.finger);
     if (refused) {
-      refused_finger_ = happened_.refused_finger = step.finger;
-      refused_margin_ = happened_.refused_margin = tick.margins.without[step.finger];
+      Refuse(tick, step.finger);
       continue;
     }
     const int next = pick + 1 < static_cast<int>(order_.size()) ? order_[pick + 1].finger : -1;

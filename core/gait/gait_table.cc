@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cstdio>
 
+#include "core/gait/finger_reach.h"
+
 namespace regrasp {
 namespace {
 
@@ -14,11 +16,10 @@ constexpr int kJointsBeyondKnuckle = 2;  // of a finger: its two outer hinges
 /// Where the finger's knuckle is in the stretched hand: its third joint from the tip, or its first
 /// [m]. The root of a finger whose metacarpal moves would be near the wrist instead.
 Vector3d KnuckleOf(const HandModel& hand, int finger) {
-  const std::vector<int>& joints = hand.fingers[finger].joints;
-  const int knuckle = std::max(0, static_cast<int>(joints.size()) - 1 - kJointsBeyondKnuckle);
+  const JointChain chain = ChainOf(hand, finger);
+  const int knuckle = std::max(0, static_cast<int>(chain.size()) - 1 - kJointsBeyondKnuckle);
   Isometry3d X = Isometry3d::Identity();
-  for (int k = 0; k <= knuckle && k < static_cast<int>(joints.size()); ++k)
-    X = X * hand.joints[joints[k]].X_PJ;
+  for (int k = 0; k <= knuckle; ++k) X = X * hand.joints[chain[k]].X_PJ;
   return X.translation();
 }
 

@@ -1,6 +1,7 @@
 #include "core/gait/local_manipulation.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/hand/damped_inverse.h"
 
@@ -38,6 +39,7 @@ std::string_view Name(LocalManipulation::End end) {
 
 void LocalManipulation::Start(const ObjectMotion& per_path, double length, double speed,
                               double acceleration, AtLimit policy) {
+  assert(length >= 0);
   *this = LocalManipulation();
   per_path_ = per_path;
   length_ = length;

@@ -217,6 +217,13 @@ constexpr std::array kParamSet = {
               .sentence = "its new value, of the type and in the range that param.get tells",
               .required = true},
 };
+constexpr std::array kShape = {
+    ParamSpec{.name = "mesh",
+              .type = kBool,
+              .sentence = "also the surface as a closed mesh, in the object's frame",
+              .default_text = "false"},
+};
+
 constexpr std::array kPlot = {
     ParamSpec{.name = "name",
               .type = kEnum,
@@ -445,9 +452,18 @@ constexpr std::array kMethods = {
                "seed, object, changed_parameters: {NAME: value} that stay"},
     MethodSpec{"resume", "resume", "let the clock of the simulation run again", kNone, false,
                "paused, tick"},
-    MethodSpec{"rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
-               "job; its record when it has ended: angle_rad (signed, unwrapped, true), turns, "
-               "gait_cycles, regrasps, dropped, max_position_error_m, max_tilt_rad, sim_time_s"},
+    MethodSpec{
+        "rotate", "rotate", "turn the object in the hand by finger gaiting", kRotate, true,
+        "job; its record when it has ended: angle_rad (signed, unwrapped, true), turns, "
+        "gait_cycles, regrasps, dropped, max_position_error_m (of the object's centre from where "
+        "it began), max_tilt_rad (of the axis), max_lag_m (behind its reference), "
+        "reference_resets (times the reference followed the object), sim_time_s"},
+    MethodSpec{"shape", "shape", "the object's surface as the fingers have felt it", kShape, false,
+               "tick, time_s, object, touched_share (of all directions), touched_cells, cells, "
+               "mean_radius_m, truth (for judging; null before anything was felt well: cells, "
+               "rms_error_m, mean_error_m (bias, positive outside), normal_error_rad (median)), "
+               "mesh: {vertices_O_m, normals_O, unknown_rad (angle to the nearest felt "
+               "direction), error_m (to the true surface), triangles}"},
     MethodSpec{
         "shutdown", "down", "stop the daemon cleanly", kNone, false,
         "stopping, activated (true: the service manager starts another at the next connection)"},

@@ -45,8 +45,9 @@ void GaitReport::Report(const FingerGait& gait, const ActivityContext& context) 
   };
   if (happened.refused_finger >= 0)
     emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin,
-         "%s may not leave: load margin %.3f N without it",
-         context.now.hand.fingers[happened.refused_finger].name.c_str(), happened.refused_margin);
+         "%s may not leave: load margin %.3f N without it, below %.3f N",
+         context.now.hand.fingers[happened.refused_finger].name.c_str(), happened.refused_margin,
+         happened.refused_below);
   if (happened.aborted)
     emit(EventKind::kSlip, finger, happened.error_position,
          "regrasp broken off: object %.1f mm, %.0f deg off", happened.error_position * 1e3,

@@ -79,8 +79,11 @@ struct RotateResult {
   int gait_cycles = 0;
   int regrasps = 0;
   bool dropped = false;
+  /// Of the object's centre from where the rotation began [m], and of the axis [rad].
   double max_position_error_m = 0;
   double max_tilt_rad = 0;
+  double max_lag_m = 0;      ///< of the object's centre from its reference [m]
+  int reference_resets = 0;  ///< how often the reference has followed the object
   double sim_time_s = 0;
   template <typename V>
   void Fields(V& v) {
@@ -91,6 +94,8 @@ struct RotateResult {
     v("dropped", dropped);
     v("max_position_error_m", max_position_error_m);
     v("max_tilt_rad", max_tilt_rad);
+    v("max_lag_m", max_lag_m);
+    v("reference_resets", reference_resets);
     v("sim_time_s", sim_time_s);
   }
 };

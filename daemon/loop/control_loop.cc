@@ -193,6 +193,7 @@ void ControlLoop::Mark(std::uint64_t request) {
   news.entry.state_hash = session_->StateHash();
   news.state = session_->state();
   news.saved = std::make_shared<const std::string>(SaveState(*session_));
+  news.felt = std::make_shared<const FeltSurface>(session_->felt_surface());
   session_->Snapshot(&scratch_.frame, false);
   if (session_->job_running()) news.job = scratch_.frame.job;
   EmitNews(std::move(news));

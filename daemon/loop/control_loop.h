@@ -63,6 +63,7 @@ struct JournalNews {
   JobRecord job = {};                             ///< kMark: the job that runs; id 0 = none
   SessionState state = {};                        ///< kMark
   std::shared_ptr<const std::string> saved = {};  ///< kMark: SaveState()
+  std::shared_ptr<const FeltSurface> felt = {};   ///< kMark
   std::shared_ptr<const RunStart> start = {};     ///< kBegin
 };
 

@@ -47,6 +47,7 @@ constexpr std::array kHandlers = {
     Entry{"reset", handlers::Reset},
     Entry{"resume", handlers::Resume},
     Entry{"rotate", handlers::Rotate},
+    Entry{"shape", handlers::Shape},
     Entry{"shutdown", handlers::Shutdown},
     Entry{"status", handlers::Status},
     Entry{"step", handlers::Step},

@@ -70,5 +70,8 @@ Outcome RecordStop(Service&, const Params&, Client&);
 // results.cc
 Outcome Plot(Service&, const Params&, Client&);
 
+// shape.cc
+Outcome Shape(Service&, const Params&, Client&);
+
 }  // namespace handlers
 }  // namespace regrasp

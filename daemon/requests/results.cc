@@ -24,6 +24,7 @@ struct Job {
   std::vector<Event> events;
   std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;  ///< comparison
   std::shared_ptr<const Incident> incident;                             ///< incident
+  std::shared_ptr<const FeltSurface> felt;                              ///< contacts, or null
   HandModel hand;
   std::shared_ptr<const ObjectModel> object;
   PlotOptions options;
@@ -60,7 +61,7 @@ void DrawInto(const Job& job, const std::string& path) {
   if (job.name == "comparison")
     DrawComparison(job, path);
   else if (job.name == "contacts")
-    PlotContacts(history, job.hand, *job.object, job.options, path);
+    PlotContacts(history, job.hand, *job.object, job.options, path, job.felt.get());
   else if (job.name == "gait")
     PlotGait(history, job.events, job.hand, job.options, path);
   else if (job.name == "scene")
@@ -156,8 +157,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->object = service.accepted.object;
   const std::int64_t tick = job->incident ? job->incident->event.tick : job->frames.back()->tick;
 
-  Outcome outcome;
-  outcome.begin = [&service, job, tick](Done done) {
+  const auto draw = [&service, job, tick](Done done) {
     const auto finish = [job, tick, done] {
       if (!job->failure.empty()) {
         const RpcError error{ErrorCode::kIo, job->failure, "look at output_dir in status", {}, {}};
@@ -175,6 +175,16 @@ Outcome Plot(Service& service, const Params& params, Client&) {
       done({}, &error);
     }
   };
+  Outcome outcome;
+  outcome.begin = draw;
+  // What was felt is the control thread's; a session that has faulted is not asked any more.
+  if (job->name == "contacts" && service.newest().frame.state != SessionState::kFaulted)
+    outcome.begin = [&service, job, draw](Done done) {
+      service.Mark([job, draw, done](const JournalNews& mark) {
+        job->felt = mark.felt;
+        draw(done);
+      });
+    };
   return outcome;
 }
 

@@ -246,6 +246,8 @@ Json JobJson(const JobRecord& job, const HandModel& hand) {
     json["regrasps"] = r.regrasps;
     json["dropped"] = r.dropped;
     json["max_position_error_m"] = r.max_position_error_m;
+    json["max_lag_m"] = r.max_lag_m;
+    json["reference_resets"] = r.reference_resets;
     json["max_tilt_rad"] = r.max_tilt_rad;
     json["sim_time_s"] = r.sim_time_s;
   }

@@ -238,10 +238,10 @@ class Pairs(ExperimentCase):
     def test_a_zoo_pairs_gaits_on_every_object(self):
         words = ["zoo", "--objects", "egg,sphere", "-n", "1", "--turns", "0.05", "--models-dir", SOURCE / "models"]
         self.run_experiment(*words, "-o", self.dir / "zoo")
-        self.assertEqual([row["case"] for row in self.rows("zoo")], ["egg, returning", "egg, exploring", "sphere, returning", "sphere, exploring"])
+        self.assertEqual([row["case"] for row in self.rows("zoo")], ["egg, planned", "egg, returning", "sphere, planned", "sphere, returning"])
         comparisons = self.summary("zoo")["comparisons"]
         self.assertEqual([(c.get("case"), c["base"], c["other"], c["pairs"]) for c in comparisons],
-                         [(None, "egg, returning", "egg, exploring", 1), (None, "sphere, returning", "sphere, exploring", 1), ("all", "returning", "exploring", 2)])
+                         [(None, "egg, planned", "egg, returning", 1), (None, "sphere, planned", "sphere, returning", 1), ("all", "planned", "returning", 2)])
         self.assertIn("'unicorn' is none of", self.refused_experiment(2, "zoo", "--objects", "unicorn", "-o", self.dir / "none"))
 
 

@@ -562,7 +562,7 @@ TEST(Outline, TrianglesFaceOutwardsAndEncloseTheVolume) {
       std::numbers::pi * std::pow(0.015, 2) * (4.0 / 3 * 0.015 + 0.04)};
   const auto objects = Objects();
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const SurfaceMesh mesh = MeshOf(objects[i]);
+    const ObjectMesh mesh = MeshOf(objects[i]);
     double volume = 0;
     for (const auto& t : mesh.triangles) {
       const Vector3d &a = mesh.vertices_O[t[0]], &b = mesh.vertices_O[t[1]],
@@ -576,7 +576,7 @@ TEST(Outline, TrianglesFaceOutwardsAndEncloseTheVolume) {
 }
 
 TEST(Outline, SilhouetteOfASphereIsAGreatCircle) {
-  const SurfaceMesh mesh = MeshOf(ObjectModel());
+  const ObjectMesh mesh = MeshOf(ObjectModel());
   const Vector3d toward = Vector3d(1, 2, 0.7).normalized();
   const auto lines = Silhouette(mesh, toward);
   EXPECT_GT(lines.size(), 50u);

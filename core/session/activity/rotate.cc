@@ -18,6 +18,7 @@ void RotateActivity::Start(const Command& command, const ActivityContext& contex
   request.seed = context.seed;
   gait_.Start(request, context.now, context.controller.wrench());
   q_WO_start_ = context.world.state().q_WO;
+  p_WO_start_ = context.world.state().p_WO;
 }
 
 ActivityStep RotateActivity::Update(const ActivityContext& context) {
@@ -50,8 +51,9 @@ void RotateActivity::Assess(const ActivityContext& context) const {
   r.angle_rad += std::remainder(twist - r.angle_rad, 2.0 * std::numbers::pi);
   r.turns = r.angle_rad / (2.0 * std::numbers::pi);
   r.max_tilt_rad = std::max(r.max_tilt_rad, std::acos(std::clamp(axis.dot(q * axis), -1.0, 1.0)));
-  r.max_position_error_m =
-      std::max(r.max_position_error_m, (truth.p_WO - context.controller.wrench().p_ref()).norm());
+  r.max_position_error_m = std::max(r.max_position_error_m, (truth.p_WO - p_WO_start_).norm());
+  r.max_lag_m = std::max(r.max_lag_m, (truth.p_WO - context.controller.wrench().p_ref()).norm());
+  r.reference_resets = gait_.forgiveness().times();
   r.gait_cycles = gait_.cycles();
   r.regrasps = gait_.regrasps();
   r.sim_time_s = context.job_time_s();

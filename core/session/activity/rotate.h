@@ -19,6 +19,7 @@ class RotateActivity : public Activity {
     v("gait", gait_);
     v("report", report_);
     v("q_WO_start", q_WO_start_);
+    v("p_WO_start", p_WO_start_);
   }
 
  private:
@@ -27,7 +28,9 @@ class RotateActivity : public Activity {
 
   FingerGait gait_;
   GaitReport report_;
-  Quaterniond q_WO_start_ = Quaterniond::Identity();  // true, when the rotation began
+  // True, when the rotation began.
+  Quaterniond q_WO_start_ = Quaterniond::Identity();
+  Vector3d p_WO_start_ = Vector3d::Zero();
 };
 
 }  // namespace regrasp

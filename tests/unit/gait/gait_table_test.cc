@@ -14,6 +14,7 @@ namespace {
 /// A hand whose fingers stand in a row, 2 cm apart, the first one next to the last one's root.
 HandModel HandWith(std::initializer_list<const char*> names) {
   HandModel hand;
+  hand.links.emplace_back();  // the palm
   int place = 0;
   for (const char* name : names) {
     Finger finger;
@@ -22,6 +23,9 @@ HandModel HandWith(std::initializer_list<const char*> names) {
     Joint joint;
     const bool last = place + 1 == static_cast<int>(names.size());
     joint.X_PJ.translation() = last ? Vector3d(0.015, 0, 0) : Vector3d(-0.02 * place, 0, 0);
+    joint.parent_link = 0;
+    joint.child_link = finger.tip_link = static_cast<int>(hand.links.size());
+    hand.links.emplace_back().parent_joint = hand.num_joints();
     hand.joints.push_back(joint);
     hand.fingers.push_back(finger);
     ++place;
