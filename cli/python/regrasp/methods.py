@@ -281,6 +281,16 @@ class Methods:
         """
         return self._job("rotate", {"angle_rad": angle_rad, "turns": turns, "continuous": continuous, "axis": axis, "speed_rad_s": speed_rad_s})
 
+    def shape(self, mesh: bool | None = None) -> dict:
+        """The object's surface as the fingers have felt it.
+        mesh: also the surface as a closed mesh, in the object's frame; left out: false.
+        Returns tick, time_s, object, touched_share (of all directions), touched_cells, cells, mean_radius_m, truth
+            (for judging; null before anything was felt well: cells, rms_error_m, mean_error_m (bias, positive
+            outside), normal_error_rad (median)), mesh: {vertices_O_m, normals_O, unknown_rad (angle to the nearest
+            felt direction), error_m (to the true surface), triangles}.
+        """
+        return self._ask("shape", {"mesh": mesh})
+
     def shutdown(self) -> dict:
         """Stop the daemon cleanly.
         Returns stopping, activated (true: the service manager starts another at the next connection).
