@@ -71,9 +71,12 @@ class FeltSurface {
   static int CellOf(const Vector3d& d_O);
   template <typename V>
   void Fields(V& v) {
+    if constexpr (V::kLoads) Reset();  // cells that are not listed have not been felt
     v("num_touched", num_touched_, FieldRange{0, kCells});
     for (int i = 0; i < num_touched_; ++i) {
       v("touched", touched_[i], FieldRange{0, kCells - 1});
+      if constexpr (V::kLoads)
+        if (cells_[touched_[i]].count > 0) v.Refuse("touched", "names a cell twice");
       v("cell", cells_[touched_[i]]);
     }
     v("log_radius_sum", log_radius_sum_);

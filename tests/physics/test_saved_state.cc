@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/common/random.h"
@@ -112,13 +113,18 @@ TEST(SavedState, GoesOnToTheSameBits) {
        {SessionState::kGrasping, SessionState::kHolding, SessionState::kExploring,
         SessionState::kRotating, SessionState::kMoving, SessionState::kReleasing})
     EXPECT_TRUE(recorded.seen.contains(state)) << Name(state);
-  for (const auto& [from, state] : recorded.states) {
-    SessionRun run(Config());
-    // Not always a fresh one: what it did before leaves no trace.
-    if (from % 2 == 0) {
-      run.Give(CommandType::kGrasp);
-      run.Ticks(static_cast<int>(from % 1000));
-    }
+  // Not always a fresh one: what it did before, here and in the runs it went on with, leaves no
+  // trace. Latest states first, which have felt the most of the object.
+  SessionRun used(Config());
+  ASSERT_TRUE(used.Grasp());
+  used.Give(CommandType::kRotate, [](regrasp::Command* c) { c->angle_rad = 1.5; });
+  used.Ticks(4000);
+  ASSERT_EQ(used.session.state(), SessionState::kRotating);
+  for (auto recorded_state = recorded.states.rbegin(); recorded_state != recorded.states.rend();
+       ++recorded_state) {
+    const auto& [from, state] = *recorded_state;
+    std::optional<SessionRun> fresh;
+    SessionRun& run = from % 2 == 0 ? used : fresh.emplace(Config());
     LoadState(state, &run.session);
     ASSERT_EQ(run.session.tick(), from);
     EXPECT_EQ(SaveState(run.session), state) << "tick " << from;

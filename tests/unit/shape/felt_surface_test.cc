@@ -134,5 +134,55 @@ TEST(FeltSurface, HashSeesEverySample) {
   EXPECT_NE(before.Digest(), after.Digest());
 }
 
+std::string Saved(const FeltSurface& felt) {
+  std::string bytes;
+  FieldSaver saver(&bytes);
+  FeltSurface copy = felt;
+  copy.Fields(saver);
+  return bytes;
+}
+
+void Load(const std::string& bytes, FeltSurface* felt) {
+  FieldLoader loader(bytes, 5);
+  felt->Fields(loader);
+  loader.Finish();
+}
+
+TEST(FeltSurface, ALoadedOneKnowsNothingOfWhatWasFeltBefore) {
+  const Surface sphere = Ellipsoid(Vector3d::Constant(0.02));
+  const FeltSurface little = Felt(sphere, 3, 1);
+  FeltSurface loaded = Felt(Ellipsoid(Vector3d::Constant(0.05)), 60, 2);
+  Load(Saved(little), &loaded);
+  for (int i = 0; i < FeltSurface::kCells; ++i) ASSERT_EQ(loaded.cell(i), little.cell(i)) << i;
+  // Both go on to feel the rest, also where the larger one had been felt.
+  FeltSurface fresh;
+  Load(Saved(little), &fresh);
+  RandomStream random(3, 1);
+  for (int k = 0; k < 500; ++k) {
+    Vector3d p, n;
+    sphere(random.Normal3().normalized(), &p, &n);
+    fresh.Add(p, n);
+    loaded.Add(p, n);
+  }
+  EXPECT_EQ(Saved(loaded), Saved(fresh));
+}
+
+TEST(FeltSurface, AStateThatNamesACellTwiceIsRefused) {
+  FeltSurface felt;
+  felt.Add({0.02, 0, 0}, {1, 0, 0});
+  felt.Add({0, 0.02, 0}, {0, 1, 0});
+  ASSERT_EQ(felt.touched_cells(), 2);
+  std::string bytes = Saved(felt);
+  // A number of cells of 32 bits, then for each its index, two vectors, a radius and a count.
+  constexpr std::size_t kIndex = sizeof(std::int16_t);
+  constexpr std::size_t kFirst = sizeof(std::int32_t);
+  constexpr std::size_t kEach = kIndex + 7 * sizeof(double) + sizeof(std::int32_t);
+  ASSERT_EQ(bytes.size(), kFirst + 2 * kEach + sizeof(double));
+  FeltSurface loaded;
+  EXPECT_NO_THROW(Load(bytes, &loaded));
+  bytes.replace(kFirst + kEach, kIndex, bytes, kFirst, kIndex);
+  EXPECT_THROW(Load(bytes, &loaded), StateError);
+}
+
 }  // namespace
 }  // namespace regrasp
