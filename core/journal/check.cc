@@ -18,6 +18,8 @@ constexpr double kMaxInertia = 1000;  // [kg m²]
 constexpr double kUnitSlack = 1e-6;   // of axes and rotations written with all their digits
 constexpr double kMaxAngle = 100;     // [rad] of a joint
 constexpr double kMaxTorque = 1e4;    // [N m], also for damping
+constexpr double kMaxRatio = 100;     // of a coupled joint to its driver
+constexpr double kMaxOffset = 1000;   // [rad] of a coupled joint
 constexpr std::size_t kMaxVertices = 2'000'000;
 
 void CheckSize(const char* what, std::size_t size, std::size_t min, std::size_t max) {
@@ -80,7 +82,7 @@ void CheckShape(const Shape& s) {
 }
 
 void CheckLinks(const HandModel& hand) {
-  const int joints = hand.num_joints();
+  const int joints = static_cast<int>(hand.joints.size());
   for (std::size_t i = 0; i < hand.links.size(); ++i) {
     const Link& link = hand.links[i];
     CheckName("link", link.name);
@@ -100,6 +102,14 @@ void CheckLinks(const HandModel& hand) {
   }
 }
 
+/// Driven joints come first; a coupled one follows one of them.
+void CheckCoupling(const Joint& joint, bool coupled, int driven) {
+  CheckRange("driver", joint.driver, coupled ? 0 : -1, coupled ? driven - 1 : -1);
+  CheckRange("size of ratio", std::abs(joint.ratio), coupled ? 1e-3 : 1, coupled ? kMaxRatio : 1);
+  if (!coupled) CheckRange("ratio", joint.ratio, 1, 1);
+  CheckRange("offset", joint.offset, coupled ? -kMaxOffset : 0, coupled ? kMaxOffset : 0);
+}
+
 void CheckJoints(const HandModel& hand) {
   const int links = static_cast<int>(hand.links.size());
   std::set<int> children;
@@ -117,12 +127,14 @@ void CheckJoints(const HandModel& hand) {
     CheckRange("effort", joint.effort, 0, kMaxTorque);
     CheckRange("damping", joint.damping, 0, kMaxTorque);
     CheckRange("armature", joint.armature, 0, kMaxInertia);
+    CheckCoupling(joint, static_cast<int>(i) >= hand.num_joints(), hand.num_joints());
   }
 }
 
 void CheckHand(const HandModel& hand) {
   CheckName("hand", hand.name);
   CheckSize("number of joints", hand.joints.size(), 1, kMaxJoints);
+  CheckRange("num_coupled", hand.num_coupled, 0, static_cast<double>(hand.joints.size()) - 1);
   CheckSize("number of links", hand.links.size(), hand.joints.size() + 1, hand.joints.size() + 1);
   CheckJoints(hand);
   CheckLinks(hand);

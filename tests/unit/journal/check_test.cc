@@ -9,6 +9,7 @@
 #include "core/journal/checked_json.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
+#include "tests/unit/hand/model_files.h"
 
 namespace regrasp {
 namespace {
@@ -27,8 +28,9 @@ const SessionConfig& Config() {
 
 /// The message that a configuration is refused with once `spoil` has changed it; "" when it is
 /// taken.
-std::string Refusal(const std::function<void(Json&)>& spoil) {
-  Json json = Json::parse(ConfigText(Config(), 0));
+std::string Refusal(const std::function<void(Json&)>& spoil,
+                    const SessionConfig& config = Config()) {
+  Json json = Json::parse(ConfigText(config, 0));
   spoil(json);
   try {
     ParseConfig(json.dump());
@@ -47,35 +49,83 @@ TEST(Check, TakesEveryModelOfOurs) {
   }
 }
 
-TEST(Check, RefusesEveryIndexThatIsNone) {
-  struct Case {
-    const char* where;  ///< a JSON pointer to a number that is an index
-    std::vector<double> spoilt;
-  };
-  const std::vector<Case> cases = {
-      {"/model/hand/links/3/parent_joint", {-1, 1000, 4294967296.0, 1e300, 0.5}},
-      {"/model/hand/joints/3/child_link", {0, -1, 99999, 4294967297.0}},
-      {"/model/hand/joints/3/parent_link", {-1, 30, 99999}},
-      {"/model/hand/fingers/0/tip_link", {-7, 0, 33, 99999}},
-      {"/model/hand/fingers/0/joints/0", {-1, 99, 1}},
-      {"/model/hand/links/0/parent_joint", {0}},
-      {"/model/object/kind", {-1, 9, 259}},
-      {"/world/stepper", {-1, 2, 256}},
-      {"/world/dt_s", {0, -1, 1e-300, 1}},
-      {"/model/object/mass", {0, -1, 1e9}},
-      {"/model/object/friction", {-0.1, 1.1}},
-  };
-  for (const Case& c : cases)
-    for (const double value : c.spoilt) {
-      const std::string refusal = Refusal([&](Json& json) {
-        const Json::json_pointer place(c.where);
-        ASSERT_TRUE(json.contains(place)) << c.where;
+struct Spoilt {
+  const char* where;  ///< a JSON pointer to a number
+  std::vector<double> values;
+};
+
+void ExpectEachRefused(const std::vector<Spoilt>& cases, const SessionConfig& config) {
+  for (const Spoilt& spoilt : cases)
+    for (const double value : spoilt.values) {
+      const auto spoil = [&](Json& json) {
+        const Json::json_pointer place(spoilt.where);
+        ASSERT_TRUE(json.contains(place)) << spoilt.where;
         json[place] = value == std::floor(value) && std::abs(value) < 1e15
                           ? Json(static_cast<std::int64_t>(value))
                           : Json(value);
-      });
-      EXPECT_NE(refusal, "") << c.where << " = " << value;
+      };
+      EXPECT_NE(Refusal(spoil, config), "") << spoilt.where << " = " << value;
     }
+}
+
+TEST(Check, RefusesEveryIndexThatIsNone) {
+  ExpectEachRefused(
+      {
+          {"/model/hand/links/3/parent_joint", {-1, 1000, 4294967296.0, 1e300, 0.5}},
+          {"/model/hand/joints/3/child_link", {0, -1, 99999, 4294967297.0}},
+          {"/model/hand/joints/3/parent_link", {-1, 30, 99999}},
+          {"/model/hand/fingers/0/tip_link", {-7, 0, 33, 99999}},
+          {"/model/hand/fingers/0/joints/0", {-1, 99, 1}},
+          {"/model/hand/links/0/parent_joint", {0}},
+          {"/model/object/kind", {-1, 9, 259}},
+          {"/world/stepper", {-1, 2, 256}},
+          {"/world/dt_s", {0, -1, 1e-300, 1}},
+          {"/model/object/mass", {0, -1, 1e9}},
+          {"/model/object/friction", {-0.1, 1.1}},
+      },
+      Config());
+}
+
+class CheckCoupled : public LoaderTest {
+ protected:
+  /// Joint 1 of this hand follows joint 0.
+  SessionConfig MimicConfig() {
+    Write("hands/mini.urdf", Replaced(kHandUrdf, "<limit lower=\"-0.5\" upper=\"1.5\"",
+                                      "<mimic joint=\"A\" multiplier=\"0.5\" offset=\"0.1\"/>"
+                                      "<limit lower=\"-0.5\" upper=\"0.6\""));
+    Write("hands/mini.toml",
+          Replaced(Replaced(kScenarioToml, "B = 20.5\n", ""), "A = 60\nB = 70\n", "A = 57\n"));
+    SessionConfig config;
+    config.model = Load();
+    config.parameters = DefaultParameters(config.model);
+    return config;
+  }
+};
+
+TEST_F(CheckCoupled, AHandWithMimicIsTakenAndComesBackWhole) {
+  const SessionConfig config = MimicConfig();
+  ASSERT_EQ(config.model.hand.num_coupled, 1);
+  const std::string text = ConfigText(config, 0);
+  const SessionConfig back = ParseConfig(text).config;
+  EXPECT_EQ(back.model.hand.num_coupled, 1);
+  EXPECT_EQ(back.model.hand.joints[1].driver, 0);
+  EXPECT_EQ(back.model.hand.joints[1].ratio, 0.5);
+  EXPECT_EQ(back.model.hand.joints[1].offset, 0.1);
+  EXPECT_EQ(ConfigText(back, 0), text);
+}
+
+TEST_F(CheckCoupled, ACouplingThatIsNoneIsRefused) {
+  const std::vector<Spoilt> cases = {
+      {"/model/hand/joints/1/driver", {9999, 1, -1, -2}},
+      {"/model/hand/joints/1/ratio", {0, 1e-4, 101, -1e300}},
+      {"/model/hand/joints/1/offset", {1e4, -1e300}},
+      // A driven joint follows none.
+      {"/model/hand/joints/0/driver", {0, 9999, -2}},
+      {"/model/hand/joints/0/ratio", {0.5, -1}},
+      {"/model/hand/joints/0/offset", {0.1}},
+      {"/model/hand/num_coupled", {-1, 0, 2, 3, 2147483647}},
+  };
+  ExpectEachRefused(cases, MimicConfig());
 }
 
 TEST(Check, RefusesTrianglesOfNoVertices) {
