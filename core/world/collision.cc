@@ -36,6 +36,20 @@ Vector3d PointNow(dBodyID body, const Vector3d& p_B) {
   return Vector3d(p[0], p[1], p[2]) + RotationOf(body) * p_B;
 }
 
+// Appends the hit; where there is no room the shallowest is left out. The order stays.
+template <typename Hit, std::size_t n>
+void Keep(const Hit& hit, FixedVector<Hit, n>* hits) {
+  if (hits->full()) {
+    Hit* const shallowest =
+        std::min_element(hits->begin(), hits->end(),
+                         [](const Hit& a, const Hit& b) { return a.geom.depth < b.geom.depth; });
+    if (hit.geom.depth <= shallowest->geom.depth) return;
+    std::move(shallowest + 1, hits->end(), shallowest);
+    hits->resize(n - 1);
+  }
+  hits->push_back(hit);
+}
+
 // Distance of a point from a box, given in the box frame.
 double DistanceToBox(const Vector3d& p, const Vector3d& half) {
   return (p.cwiseAbs() - half).cwiseMax(0.0).norm();
@@ -216,13 +230,13 @@ void Collider::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
   for (const Part& part : parts_) {
     if (!MayTouch(part, object_)) continue;
     const int n = ObjectContacts(part, found);
-    for (int k = 0; k < n; ++k) object_hits->push_back({part.link, part.body, found[k]});
+    for (int k = 0; k < n; ++k) Keep({part.link, part.body, found[k]}, object_hits);
   }
   for (const Pair& pair : pairs_) {
     const Part &a = parts_[pair.a], &b = parts_[pair.b];
     if (!MayTouch(a, b)) continue;
     const int n = Contacts(a, b, found);
-    for (int k = 0; k < n; ++k) link_hits->push_back({a.link, b.link, a.body, b.body, found[k]});
+    for (int k = 0; k < n; ++k) Keep({a.link, b.link, a.body, b.body, found[k]}, link_hits);
   }
 }
 

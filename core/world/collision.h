@@ -49,8 +49,8 @@ class Collider {
   /// Forgets the shapes without touching ODE (after a fault).
   void Abandon();
 
-  /// Fills both lists; what does not fit is dropped, the object's contacts first come first served
-  /// in the order of the links. At most one contact (the deepest) per pair, four for a box or a
+  /// Fills both lists, the object's in the order of the links; of more than fit, the shallowest are
+  /// left out. At most one contact (the deepest) per pair, four for a box or a
   /// mesh on a box.
   void Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
                FixedVector<LinkHit, kMaxLinkHits>* link_hits);

@@ -1,5 +1,6 @@
 #include "core/world/stepper_choice.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -11,6 +12,7 @@ namespace {
 constexpr double kDuration = 0.3;    // [s]: most hands have closed by then
 constexpr double kStiffness = 1.0;   // [N m/rad] towards the closed posture
 constexpr double kAgreement = 0.05;  // of the motion
+constexpr double kMotion = 0.1;      // a shorter one counts as this [rad]
 
 struct Trial {
   JointVector q;
@@ -46,7 +48,7 @@ StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& conf
   if (model.hand.num_joints() == 0) return {Stepper::kFast, "the hand has no joints"};
   const double moved = (exact.q - model.scenario.q_preshape).cwiseAbs().maxCoeff();
   const double apart = (exact.q - fast.q).cwiseAbs().maxCoeff();
-  const bool agree = apart <= kAgreement * moved;
+  const bool agree = apart <= kAgreement * std::max(moved, kMotion);
   std::array<char, 128> text{};
   std::snprintf(text.data(), text.size(), "the steps differ by %.2g rad in a motion of %.2g rad",
                 apart, moved);

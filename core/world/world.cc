@@ -45,6 +45,7 @@ struct World::Impl {
   void UpdateTorques();
   void Show();
   void FindContacts();
+  bool MayHave(const ObjectContact& contact) const;
   void Advance();
 
   ObjectModel object;
@@ -250,6 +251,12 @@ WorldMemory World::Memory() const {
   return m;
 }
 
+/// Of a link and a finger of this hand.
+bool World::Impl::MayHave(const ObjectContact& contact) const {
+  return contact.link >= 0 && static_cast<std::size_t>(contact.link) < finger_of_tip.size() &&
+         contact.finger == finger_of_tip[static_cast<std::size_t>(contact.link)];
+}
+
 bool World::Remember(const WorldMemory& m) {
   Impl& w = *impl_;
   const auto n = static_cast<Eigen::Index>(w.hand.num_joints());
@@ -257,6 +264,8 @@ bool World::Remember(const WorldMemory& m) {
   if (w.faulted || m.torque.size() != n - w.transmissions.count() || m.state.q.size() != n ||
       m.state.qdot.size() != n || m.state.torque.size() != n)
     return false;
+  for (const ObjectContact& contact : m.state.contacts)
+    if (!w.MayHave(contact)) return false;
   if (exact ? !w.ode.Remember(m.bodies) : !m.bodies.bodies.empty()) return false;
   w.state = m.state;
   w.torque = m.torque;

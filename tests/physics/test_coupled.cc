@@ -88,6 +88,47 @@ TEST(CoupledJoint, StopsAtTheFollowersLimitAndStaysThere) {
   EXPECT_NEAR(world.state().q[0], 0.505, 1e-3);
 }
 
+TEST(Contacts, OfMoreThanFitTheDeepestAreKept) {
+  HandModel hand = CoupledFinger(1.0);
+  // Beads of 2 mm around the ball, each pressed in deeper than the one before; far from the finger.
+  constexpr int kBeads = kMaxObjectContacts + 6;
+  const ObjectModel ball = FarBall();
+  const Vector3d p_WO(0, 1, 0);
+  const auto depth = [](int i) { return 1e-5 * (i + 1); };
+  for (int i = 0; i < kBeads; ++i) {
+    const double angle = 2 * M_PI * i / kBeads;
+    Shape bead;
+    bead.radius = 0.002;
+    bead.a_L = bead.b_L = p_WO + (ball.radius + bead.radius - depth(i)) *
+                                     Vector3d(std::cos(angle), std::sin(angle), 0);
+    hand.links[0].shapes.push_back(bead);
+  }
+  World world(hand, ball, WorldConfig(), JointVector::Zero(1), At(0, 1, 0));
+  ASSERT_EQ(world.Step(), StepStatus::kOk);
+  const auto& contacts = world.state().contacts;
+  ASSERT_EQ(contacts.size(), static_cast<std::size_t>(kMaxObjectContacts));
+  for (int k = 0; k < kMaxObjectContacts; ++k)  // in their order
+    EXPECT_NEAR(contacts[static_cast<std::size_t>(k)].depth, depth(k + 6), 1e-9) << k;
+}
+
+TEST(WorldMemory, ContactsOfNoLinkOfTheHandAreRefused) {
+  const HandModel hand = CoupledFinger(1.0);
+  World world(hand, FarBall(), WorldConfig(), JointVector::Zero(1), At(0, 1, 0));
+  WorldMemory memory = world.Memory();
+  ObjectContact contact;
+  contact.link = 2;
+  contact.finger = 0;
+  memory.state.contacts.push_back(contact);
+  EXPECT_TRUE(world.Remember(memory));
+  for (const auto& [link, finger] :
+       {std::pair{3, 0}, {32, -1}, {-1, -1}, {1, 0}, {2, -1}, {2, 1}}) {
+    memory.state.contacts[0].link = link;
+    memory.state.contacts[0].finger = finger;
+    EXPECT_FALSE(world.Remember(memory)) << link << " " << finger;
+    EXPECT_EQ(world.state().contacts[0].link, 2);
+  }
+}
+
 TEST(StartOverlap, IsTheDepthOfTheDeepestLink) {
   const HandModel hand = CoupledFinger(1.0);
   KinematicsData data;

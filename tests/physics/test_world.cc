@@ -665,6 +665,13 @@ TEST(StepperChoice, TakesTheFastStepForAHandWhereBothAgree) {
   EXPECT_EQ(ChooseStepper(Shadow(), hinges).stepper, Stepper::kFast);
 }
 
+TEST(StepperChoice, TakesTheFastStepForAHandThatIsClosedFromTheBeginning) {
+  LoadedScenario still = Shadow();
+  still.scenario.q_closed = still.scenario.q_preshape;
+  const StepperChoice choice = ChooseStepper(still, {});
+  EXPECT_EQ(choice.stepper, Stepper::kFast) << choice.reason;
+}
+
 TEST(StepperChoice, TakesTheExactStepWhereTheFastOneIsOff) {
   WorldConfig broken;
   broken.contact_solver.max_sweeps = 0;  // contact forces stay zero: through the object
