@@ -1,5 +1,7 @@
 #include "core/session/quality_monitor.h"
 
+#include <limits>
+
 #include "core/gait/gait_parameters.h"
 #include "core/gait/sure_grasp.h"
 #include "core/quality/load_margin.h"
@@ -27,6 +29,15 @@ void QualityMonitor::Update(const ControlTick& now) {
 
   stability_.measure = parameters.stability_measure;
   stability_.active = stability_.of(stability_.measure);
+}
+
+StabilityFrame QualityMonitor::stability() const {
+  StabilityFrame shown = stability_;
+  if (epsilon_known_) return shown;
+  double& epsilon = shown.values[static_cast<std::size_t>(Measure::kEpsilon)];
+  epsilon = std::numeric_limits<double>::quiet_NaN();
+  if (shown.measure == Measure::kEpsilon) shown.active = epsilon;
+  return shown;
 }
 
 void QualityMonitor::UpdateMargin(const ControlTick& now) {
@@ -72,6 +83,7 @@ void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale) {
   ++epsilon_steps_;
   if (!epsilon_.Step(kEpsilonFacets)) return;
   stability_.values[static_cast<std::size_t>(Measure::kEpsilon)] = epsilon_.result();
+  epsilon_known_ = true;
   epsilon_begun_ = false;
 }
 

@@ -22,8 +22,8 @@ class QualityMonitor {
   static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
 
   void Update(const ControlTick& now);
-  /// Epsilon is of the grasp some 0.1 s ago.
-  const StabilityFrame& stability() const { return stability_; }
+  /// Epsilon is of the grasp some 0.1 s ago; NaN until it has been computed once.
+  StabilityFrame stability() const;
   /// Load margins for the controllers: low-passed.
   const LoadMargins& margins() const { return margins_; }
   /// rho of the grasp without this finger, as last computed [N].
@@ -40,6 +40,7 @@ class QualityMonitor {
     v("epsilon_begun", epsilon_begun_);
     v("epsilon_steps", epsilon_steps_, FieldRange{0, kMaxEpsilonSteps});
     v("epsilon_ticks", epsilon_ticks_);
+    v("epsilon_known", epsilon_known_);
     if constexpr (V::kLoads) RepeatEpsilon();
   }
 
@@ -63,6 +64,7 @@ class QualityMonitor {
   bool epsilon_begun_ = false;
   int epsilon_steps_ = 0;
   int epsilon_ticks_ = 0;  // since the last beginning
+  bool epsilon_known_ = false;
 };
 
 }  // namespace regrasp

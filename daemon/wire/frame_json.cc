@@ -49,16 +49,17 @@ double TorqueScale(const std::vector<GraspContact>& contacts) {
   return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
 }
 
-/// Every measure of stability: what the frame has, and what is too slow for the simulation.
+/// Every measure of stability: what the frame has, and what is too slow for the simulation; null
+/// where it is not known.
 void AddMeasures(const Frame& frame, const std::vector<GraspContact>& contacts, Json* json) {
   MeasureInput input(contacts, TorqueScale(contacts), kMonitorEdges);
   Json names = Json::array();
   for (const MeasureInfo& info : kMeasureTable) {
     names.push_back(info.name);
     const bool here = info.cost == MeasureCost::kOnRequest;
-    (*json)[std::string(info.name)] = !here              ? frame.stability.of(info.id)
-                                      : contacts.empty() ? 0.0
-                                                         : info.compute(input);
+    (*json)[std::string(info.name)] = !here              ? Json(frame.stability.of(info.id))
+                                      : contacts.empty() ? Json()
+                                                         : Json(info.compute(input));
   }
   (*json)["measures"] = std::move(names);
 }

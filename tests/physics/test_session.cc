@@ -483,6 +483,9 @@ TEST(Session, TicksAllocateNothing) {
   EXPECT_EQ(Allocations(600), 0) << "releasing";
 }
 
+/// After so many a measure that is spread over ticks has been computed once: with an empty hand.
+constexpr int kSpreadTicks = 100;
+
 bool Finite(const Frame& f) {
   bool ok = f.q_sensed.allFinite() && f.q.allFinite() && f.qdot.allFinite() &&
             f.torque.allFinite() && f.p_WO_sensed.allFinite() &&
@@ -501,7 +504,28 @@ bool Finite(const Frame& f) {
   const StabilityFrame& s = f.stability;
   for (const double x : {s.active, s.threshold, f.exploration.phi, f.exploration.gradient_norm})
     ok = ok && std::isfinite(x);
+  for (const MeasureInfo& info : kMeasureTable) {
+    if (info.cost == MeasureCost::kOnRequest) continue;
+    const bool known = info.cost == MeasureCost::kTick || f.tick > kSpreadTicks;
+    ok = ok && (std::isfinite(s.of(info.id)) || (!known && std::isnan(s.of(info.id))));
+  }
   return ok && !std::isnan(s.load_margin) && f.exploration.gradient_W.allFinite();
+}
+
+TEST(Session, EpsilonIsUnknownUntilItHasBeenComputed) {
+  SessionConfig config = ShadowConfig();
+  config.parameters.control.stability_measure = Measure::kEpsilon;
+  SessionRun run(config);
+  run.Tick();
+  EXPECT_TRUE(std::isnan(run.Snapshot().stability.of(Measure::kEpsilon)));
+  EXPECT_TRUE(std::isnan(run.Snapshot().stability.active));
+  std::string state;
+  run.session.Save(&state);
+  run.Ticks(kSpreadTicks);
+  EXPECT_EQ(run.Snapshot().stability.of(Measure::kEpsilon), 0);  // nothing is grasped
+  EXPECT_EQ(run.Snapshot().stability.active, 0);
+  run.session.Load(state);
+  EXPECT_TRUE(std::isnan(run.Snapshot().stability.of(Measure::kEpsilon)));
 }
 
 TEST(Session, FramesAreFinite) {
