@@ -61,8 +61,8 @@ class File {
   explicit File(const std::string& path) : path_(path) {
     fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     struct stat info {};
-    if (fd_ < 0 || ::fstat(fd_, &info) != 0) Fail(std::strerror(errno));
-    if (!S_ISREG(info.st_mode)) Fail("not a regular file");
+    if (fd_ < 0 || ::fstat(fd_, &info) != 0) Refuse(std::strerror(errno));
+    if (!S_ISREG(info.st_mode)) Refuse("not a regular file");
     size_ = static_cast<std::uint64_t>(info.st_size);
   }
   ~File() {
@@ -89,6 +89,11 @@ class File {
   }
 
  private:
+  /// In the constructor, after which nobody closes the file.
+  [[noreturn]] void Refuse(const std::string& cause) const {
+    if (fd_ >= 0) ::close(fd_);
+    Fail(cause);
+  }
   [[noreturn]] void Fail(const std::string& cause) const {
     throw McapError("cannot read " + path_ + ": " + cause);
   }

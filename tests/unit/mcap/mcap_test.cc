@@ -158,6 +158,18 @@ TEST_F(Mcap, RefusesWhatIsNoMcap) {
   EXPECT_THROW(ReadMcap(path, [](const McapMessage&) {}), McapError);
 }
 
+TEST_F(Mcap, WhatIsRefusedIsClosed) {
+  const auto next_descriptor = [] {
+    const int fd = ::dup(0);
+    ::close(fd);
+    return fd;
+  };
+  const int before = next_descriptor();
+  for (int i = 0; i < 3; ++i)
+    EXPECT_THROW(ReadMcap(directory, [](const McapMessage&) {}), McapError);
+  EXPECT_EQ(next_descriptor(), before);
+}
+
 TEST_F(Mcap, NeverOverwrites) {
   WriteSome();
   EXPECT_THROW(McapWriter{path}, McapError);
