@@ -188,8 +188,10 @@ void FingerGait::Forgive(const ControlTick& tick, bool held, ObjectWrench* wrenc
 ObjectMotion FingerGait::UpdateMotion(const ControlTick& tick, ObjectWrench* wrench) {
   const ObjectMotion motion = manipulation_.Update(tick, *wrench, home_);
   if (manipulation_.end() == LocalManipulation::End::kNone) return motion;
+  const double before = turned_before_;
   EndMotion(tick.gait);
   Forgive(tick, false, wrench);
+  turned_in_cycle_ = turned_before_ - before;
   Enter(stop_ || there() ? GaitPhase::kFinish : GaitPhase::kSettle);
   return motion;
 }

@@ -13,7 +13,7 @@
 namespace regrasp {
 namespace {
 
-constexpr int kRatedPerTick = 2;
+constexpr int kRatedPerTick = 1;
 constexpr int kReachSteps = 8;
 constexpr double kLimitMargin = 0.05;    // of a joint at the landing [rad]
 constexpr double kMissing = 0.0015;      // a tip this far from its target does not reach it [m]
@@ -23,7 +23,10 @@ constexpr double kClearance = 0.001;  // to links of other fingers [m]
 constexpr double kKnown = 0.35;       // farther from all that was felt the surface is unknown [rad]
 constexpr double kUnknownCost = 1.0;  // per rad from what was felt
 constexpr double kPenalty = 2.0;
-constexpr double kUnknownShare = 0.3;  // of the angle to the nearest felt direction
+constexpr double kUnknownShare = 0.3;     // of the angle to the nearest felt direction
+constexpr double kLinkClearance = 0.002;  // of the link before the tip from the object [m]
+constexpr double kLinkTouches = 0.004;    // so much less costs kPenalty [m]
+constexpr double kNearObject = 1.8;       // of the mean radius: a link farther out is clear of it
 
 /// Candidate `index` as an offset from home in its tangent plane, in units of the reach.
 Eigen::Vector2d RingOffset(int index) {
@@ -39,6 +42,46 @@ Eigen::Vector2d RingOffset(int index) {
     index -= kCounts[ring];
   }
   return Eigen::Vector2d::Zero();
+}
+
+/// Between a link and the felt surface, at most kLinkClearance; negative where they overlap [m].
+/// `q_OW`, `p_WO`: of the object.
+double GapToObject(const Bone& bone, const FeltSurface& felt, const Vector3d& p_WO,
+                   const Quaterniond& q_OW) {
+  constexpr double kLeastSlope = 0.5;  // n . d: steeper than that it counts as at this slope
+  double gap = kLinkClearance;
+  if (bone.radius <= 0) return gap;
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const Vector3d r = bone.a_W + share * (bone.b_W - bone.a_W) - p_WO;
+    const double distance = r.norm();
+    if (distance > kNearObject * felt.mean_radius() + bone.radius || distance < 1e-6) continue;
+    const SurfacePoint surface = felt.At(q_OW * r);
+    const double slope =
+        std::max(kLeastSlope, surface.normal_O.dot(surface.p_O) / surface.p_O.norm());
+    gap = std::min(gap, (distance - surface.p_O.norm()) * slope - bone.radius);
+  }
+  return gap;
+}
+
+/// For the link before the tip, where it would touch the object: there, or once the object has
+/// turned by `turn` [rad, rotation vector in W].
+double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& there,
+                   const Vector3d& turn_W) {
+  const Vector3d& p_WO = tick.estimate.p_WO;
+  const Quaterniond q_OW = tick.estimate.q_WO.conjugate();
+  double gap = GapToObject(there.middle, tick.felt, p_WO, q_OW);
+  if (!turn_W.isZero()) {
+    const Quaterniond turn = FromRotationVector(turn_W);
+    const Vector3d p_WF = p_WO + turn * (there.p_WF - p_WO);
+    const FingerPosture turned = ReachFor(tick.hand, finger, there, p_WF, 0.0, kReachSteps);
+    gap = std::min(gap, GapToObject(turned.middle, tick.felt, p_WO, q_OW * turn.conjugate()));
+  }
+  return kPenalty * std::min(1.5, (kLinkClearance - gap) / kLinkTouches);
+}
+
+/// The coming turn, as far as the finger follows [rad, rotation vector in W].
+Vector3d TurnAhead(const ControlTick& tick, const LandingPlan::Request& request, double reserve) {
+  return std::min(reserve, tick.gait.step_rad) * request.axis_W;
 }
 
 double Share(double value, double wanted) {
@@ -80,6 +123,10 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   landing.score = CheapScore(tick, there, landing.normal_O, surface.unknown, &landing.reserve) -
                   kFarCost * offset.squaredNorm() / kFar2;
   if (missing > kMissing) landing.score -= kPenalty * (1 + missing / 0.01);
+  const bool listed =
+      !shortlist_.full() || landing.score > shortlist_[shortlist_.size() - 1].landing.score;
+  if (listed)
+    landing.score -= LinkPenalty(tick, finger, there, TurnAhead(tick, request_, landing.reserve));
   return candidate;
 }
 
@@ -120,7 +167,9 @@ LandingPlan::Candidate LandingPlan::Stay(const ControlTick& tick) const {
                                          tick.gait.doubt * tick.felt.BendAt(landing.p_OC));
   const FingerPosture now =
       PostureAt(tick.hand, request_.finger, AnglesOf(tick.hand, request_.finger, tick.estimate.q));
-  landing.score = CheapScore(tick, now, landing.normal_O, 0, &landing.reserve);
+  landing.score =
+      CheapScore(tick, now, landing.normal_O, 0, &landing.reserve) -
+      LinkPenalty(tick, request_.finger, now, TurnAhead(tick, request_, landing.reserve));
   const double far2 =
       TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC, request_.home.normal_W)
           .squaredNorm();
