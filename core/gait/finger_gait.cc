@@ -111,6 +111,7 @@ Regrasp::Request FingerGait::RequestOf(const GaitStep& step, int next,
   request.over_surface = planned(tick);
   const bool scarce = planned(tick) && tick.margins.without[step.finger] < tick.gait.margin_wanted;
   request.transfer_s = scarce ? tick.gait.careful_s : tick.gait.transfer_s;
+  if (planned(tick) && !scarce && rubs_ < tick.gait.rubs) request.rub_s = tick.gait.rub_s;
   request.explore = tick.gait.mode == GaitMode::kExploring && request_.make_room_for < 0;
   request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
   request.slide.criterion = Criterion::kSwitched;
@@ -133,8 +134,9 @@ bool FingerGait::MustBreakOff(const ControlTick& tick, const ObjectWrench& wrenc
     error_position_ = happened_.error_position;
     error_rotation_ = happened_.error_rotation;
   }
-  const bool leaving =
-      regrasp_.phase() == Regrasp::Phase::kUnload || regrasp_.phase() == Regrasp::Phase::kLift;
+  const bool leaving = regrasp_.phase() == Regrasp::Phase::kUnload ||
+                       regrasp_.phase() == Regrasp::Phase::kLift ||
+                       regrasp_.phase() == Regrasp::Phase::kSlide;
   if (!leaving) return false;
   bool slips = false;
   for (int i : tick.grasp.without(regrasp_.finger())) {
@@ -214,6 +216,7 @@ void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* contro
   happened_.regrasp_ended = true;
   regrasp_began_ = false;
   if (!regrasp_.aborted()) caution_[finger] *= tick.gait.caution_kept;
+  if (!regrasp_.aborted() && regrasp_.request().rub_s > 0) ++rubs_;
   misses_ = regrasp_.lost() ? misses_ + 1 : 0;
   if (regrasp_.lost() && (!planned(tick) || misses_ >= tick.gait.misses)) {
     std::snprintf(error_, sizeof(error_), "%s found no surface to stand on",

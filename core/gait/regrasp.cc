@@ -57,7 +57,7 @@ Regrasp::Phase Regrasp::phase() const {
     case GuidedSlide::Phase::kUnload:
       return Phase::kUnload;
     case GuidedSlide::Phase::kAway:
-      if (!request_.hop) return Phase::kSlide;
+      if (!request_.hop || hop_.phase() == Hop::Phase::kIdle) return Phase::kSlide;
       return hop_.phase() == Hop::Phase::kAcross   ? Phase::kAcross
              : hop_.phase() == Hop::Phase::kDown   ? Phase::kDown
              : hop_.phase() == Hop::Phase::kSeek   ? Phase::kSeek
@@ -87,7 +87,8 @@ void Regrasp::Update(const ControlTick& tick, const Target& target, HybridContro
   SlideProfile profile;
   profile.transfer_s =
       slide_.phase() == GuidedSlide::Phase::kUnload ? request_.transfer_s : parameters.transfer_s;
-  profile.leave_force = request_.hop ? parameters.hop_force : parameters.slide_force;
+  const bool lifts = request_.hop && request_.rub_s <= 0;
+  profile.leave_force = lifts ? parameters.hop_force : parameters.slide_force;
   profile.grip_force = parameters.grip_force;
   profile.settle_s = parameters.explore_settle_s;
   profile.explore_s = parameters.explore_s;
@@ -96,7 +97,7 @@ void Regrasp::Update(const ControlTick& tick, const Target& target, HybridContro
   slide_.Update(tick, profile, guide, controller, tasks);
   if (away) {
     Travel(tick, target, &(*tasks)[finger()]);
-  } else if (request_.hop && slide_.phase() == GuidedSlide::Phase::kAway) {
+  } else if (lifts && slide_.phase() == GuidedSlide::Phase::kAway) {
     hop_.Start(tick, finger(), request_.over_surface);
   }
 }
@@ -104,6 +105,11 @@ void Regrasp::Update(const ControlTick& tick, const Target& target, HybridContro
 void Regrasp::Travel(const ControlTick& tick, const Target& target, FingerTask* task) {
   if (!request_.hop) {
     if (SlideOver(tick, target, task)) slide_.Land(request_.explore);
+    return;
+  }
+  if (hop_.phase() == Hop::Phase::kIdle) {
+    if (SlideOver(tick, target, task) || slide_ticks_ * tick.dt > request_.rub_s)
+      hop_.Start(tick, finger(), request_.over_surface);
     return;
   }
   hop_.Update(tick, {target.p_WF, target.normal_W, target.p_WO}, aborted_, task);

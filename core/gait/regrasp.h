@@ -20,7 +20,7 @@ class Regrasp {
     kDown,     ///< until it touches
     kSeek,     ///< nothing there: towards the object's centre
     kGoBack,   ///< nor there: to above where it left, then down again
-    kSlide,    ///< over the surface to the target, or
+    kSlide,    ///< over the surface to the target, or towards it before a hop; or
     kSettle,   ///< explore: presses with the exploring force until the filters follow
     kRecall,   ///< explore: slides to where the finger's last explorations ended
     kExplore,  ///< Algorithm 1
@@ -35,6 +35,7 @@ class Regrasp {
     bool explore = false;
     bool over_surface = false;  ///< a hop keeps above the felt surface, and a miss is sought
     double transfer_s = 0.03;   ///< load transfer before it leaves [s]
+    double rub_s = 0;           ///< slides so long towards its target before it hops [s]
     double disc_share = 1;  ///< explore: of gait.disc_radius, within which the new contact may be
     template <typename V>
     void Fields(V& v) {
@@ -44,6 +45,7 @@ class Regrasp {
       v("disc_share", disc_share);
       v("over_surface", over_surface);
       v("transfer_s", transfer_s);
+      v("rub_s", rub_s);
     }
   };
   /// Where the finger shall go, in W; follows the object's reference position.

@@ -191,6 +191,7 @@ void Session::Impl::ApplyParameters() {
   world.SetFriction(parameters.object.friction);
   world.SetMass(parameters.object.mass_kg);
   world.SetGravity(parameters.gravity_W);
+  CountOn();
 }
 
 void Session::Impl::SetParameter(const Command& command) {

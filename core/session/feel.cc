@@ -19,4 +19,21 @@ void Session::Impl::Feel() {
       felt.Add(q_OW * (f.p_WC - e.p_WO), q_OW * f.normal_W);
 }
 
+void Session::Impl::FeelFriction() {
+  const bool known = felt_friction.known();
+  felt_friction.Update(estimator.estimate(), tasks, controller.commanded_forces(), dt);
+  if (known || !felt_friction.known()) return;
+  CountOn();
+  log.Emit(tick, EventKind::kParameter, -1, felt_friction.felt(),
+           "friction felt: %.2f; the controller counts on %.2f", felt_friction.felt(),
+           control.friction_estimate);
+}
+
+void Session::Impl::CountOn() {
+  control = parameters.control;
+  if (parameters.gait.plan && parameters.gait.friction_share > 0)
+    control.friction_estimate =
+        felt_friction.Counted(parameters.gait.friction_share, control.friction_estimate);
+}
+
 }  // namespace regrasp

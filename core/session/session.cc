@@ -62,7 +62,7 @@ ActivityContext Session::Impl::Context() {
                         monitor.margins(),
                         felt,
                         parameters.gravity_W,
-                        parameters.control,
+                        control,
                         parameters.exploration,
                         parameters.gait,
                         dt};
@@ -123,6 +123,7 @@ void Session::Impl::Tick() {
   times.sense_s = clock.Lap();
 
   Feel();
+  CountOn();
   monitor.Update(Context().now);
   WatchContacts();
   WatchDrop();
@@ -131,8 +132,8 @@ void Session::Impl::Tick() {
     push_until = -1;
   }
   motion = Act();
-  torque = controller.Update(estimator.estimate(), tasks, motion, parameters.gravity_W,
-                             parameters.control);
+  torque = controller.Update(estimator.estimate(), tasks, motion, parameters.gravity_W, control);
+  FeelFriction();
   if (const Activity* running = Running(state)) running->AddTorque(Context(), &torque);
   times.control_s = clock.Lap();
 

@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "core/control/felt_friction.h"
 #include "core/sensing/sensors.h"
 #include "core/session/activity/explore.h"
 #include "core/session/activity/grasp.h"
@@ -51,6 +52,9 @@ struct Session::Impl {
 
   // feel.cc: the object's surface, from what the controller believes
   void Feel();
+  void FeelFriction();
+  /// parameters.control, with the friction that was felt where landings are planned.
+  void CountOn();
 
   // watch.cc
   void WatchContacts();
@@ -72,6 +76,7 @@ struct Session::Impl {
     v("sensors", sensors);
     v("estimator", estimator);
     v("felt", felt);
+    v("felt_friction", felt_friction);
     v("judge", judge);
     v("monitor", monitor);
     v("controller", controller);
@@ -104,6 +109,7 @@ struct Session::Impl {
   Sensors sensors;
   StateEstimator estimator;  // what the controller believes
   FeltSurface felt;
+  FeltFriction felt_friction;
   Judge judge;
   QualityMonitor monitor;
   HybridController controller;
@@ -120,6 +126,7 @@ struct Session::Impl {
   std::array<bool, kMaxFingers> was_in_contact{};
 
   // Not part of the state.
+  ControlParameters control;  // what the controller counts on in this tick
   JointVector torque;
   EventLog log;
   FixedVector<JobRecord, kMaxPending> finished, finished_out;

@@ -107,6 +107,7 @@ void Session::Impl::Load(std::string_view bytes) {
     loader.Refuse("estimator", "has not begun");
   if (tasks.size() != hand.fingers.size()) loader.Refuse("tasks", "are of another hand");
   if (Running(state) && !job_running()) loader.Refuse("job", "does not run");
+  CountOn();
   log = EventLog();
   finished.clear();
 }

@@ -129,6 +129,50 @@ TEST_F(LandingPlanTest, KeepsOffGroundThatNobodyHasFelt) {
   EXPECT_LT(plan.landing().unknown, 0.36);
 }
 
+// Least height of the finger's middle link above the felt surface, once its tip has landed [m].
+double HeightOfMiddleLink(const ControlTick& tick, int finger, const Landing& landing) {
+  const Vector3d& p_WO = tick.estimate.p_WO;
+  const Quaterniond& q_WO = tick.estimate.q_WO;
+  const FingerPosture now =
+      PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, tick.estimate.q));
+  const FingerPosture there =
+      ReachFor(tick.hand, finger, now, p_WO + q_WO * landing.p_OF, 0.05, 20);
+  double height = 1;
+  for (double share = 0; share <= 1; share += 0.125) {
+    const Bone& bone = there.middle;
+    const Vector3d r = q_WO.conjugate() * (bone.a_W + share * (bone.b_W - bone.a_W) - p_WO);
+    height = std::min(height, r.norm() - tick.felt.At(r).p_O.norm() - bone.radius);
+  }
+  return height;
+}
+
+TEST_F(LandingPlanTest, KeepsTheLinkBeforeTheTipOffTheObject) {
+  const int first = hand.FindFinger("first");
+  LandingPlan plan;
+  plan.Start(Home(first));
+  Plan(&plan);
+  const Landing free = plan.landing();
+  // A bump grows into the middle link of a finger that stands there.
+  const FingerPosture now = PostureAt(hand, first, AnglesOf(hand, first, estimate.q));
+  const FingerPosture there =
+      ReachFor(hand, first, now, estimate.p_WO + estimate.q_WO * free.p_OF, 0.05, 20);
+  const Vector3d r =
+      estimate.q_WO.conjugate() * (0.5 * (there.middle.a_W + there.middle.b_W) - estimate.p_WO);
+  const double bump = r.norm() - there.middle.radius + 0.002;
+  ASSERT_GT(bump, kRadius);
+  felt.Reset();
+  for (int i = 0; i < FeltSurface::kCells; ++i) {
+    const Vector3d d = FeltSurface::CellDirection(i);
+    const bool near = d.dot(r.normalized()) > std::cos(0.35);
+    for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add((near ? bump : kRadius) * d, d);
+  }
+  const double blocked = HeightOfMiddleLink(Tick(), first, free);
+  ASSERT_LT(blocked, 0);
+  plan.Start(Home(first));
+  Plan(&plan);
+  EXPECT_GT(HeightOfMiddleLink(Tick(), first, plan.landing()), blocked + 0.001);
+}
+
 // Of a friction cone about a normal that may be off by an angle, that much of its half angle is
 // sure.
 TEST(FrictionUnderTilt, IsThatOfTheInscribedCone) {

@@ -1,0 +1,35 @@
+#pragma once
+
+/// How rough the object is, felt by fingers that slide over it: while one does, the tangential
+/// force that moves it is its friction, mu = |f_t| / f_n. The mean over what has slid lately, less
+/// a share for what is uncertain, is the coefficient that forces and load margins count on.
+
+#include "core/control/hybrid_controller.h"
+
+namespace regrasp {
+
+class FeltFriction {
+ public:
+  /// One tick. `commanded`: force on the object asked of each finger [N].
+  void Update(const Estimate& estimate, const FingerTasks& tasks,
+              const FixedVector<Vector3d, kMaxFingers>& commanded, double dt);
+  /// Fingers have slid for long enough.
+  bool known() const { return felt_s_ >= kEnough_s; }
+  double felt() const { return mean_; }      ///< mean of |f_t| / f_n; 0: nothing has slid
+  double felt_s() const { return felt_s_; }  ///< time over which it was felt [s]
+  /// What to count on: `share` of what was felt, `unfelt` until it is known.
+  double Counted(double share, double unfelt) const;
+  template <typename V>
+  void Fields(V& v) {
+    v("mean", mean_);
+    v("felt_s", felt_s_);
+    v("sliding_s", sliding_s_);
+  }
+
+ private:
+  static constexpr double kEnough_s = 0.1;
+  double mean_ = 0, felt_s_ = 0;
+  std::array<double, kMaxFingers> sliding_s_{};  // in a row, by finger
+};
+
+}  // namespace regrasp
