@@ -103,7 +103,11 @@ ObjectMotion LocalManipulation::Update(const ControlTick& tick, const ObjectWren
   const double e_p = (wrench.p_ref() - estimate.p_WO).norm();
   const double e_r = RotationVector(wrench.q_ref() * estimate.q_WO.conjugate()).norm();
   const bool wait = e_p > tick.gait.lag_position || e_r > tick.gait.lag_rotation;
-  waited_ = wait ? waited_ + 1 : 0;
+  // On a planned stance all the waiting counts: an object that creeps behind is about to slip.
+  if (wait)
+    ++waited_;
+  else if (!tick.gait.plan || policy_ == AtLimit::kYields)
+    waited_ = 0;
   double wanted = stop_ || wait ? 0.0 : speed_max_;
   wanted = std::min(wanted, std::sqrt(2.0 * acceleration_ * std::max(0.0, left)));
   const double change = acceleration_ * dt;
