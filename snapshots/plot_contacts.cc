@@ -250,8 +250,7 @@ double DrawFeltFacts(Canvas* canvas, Point2 at, const FeltPicture& picture) {
                {.size = 17, .align_x = AlignX::kRight});
   y += 28;
   const ShapeErrors& judged = picture.judged;
-  std::vector<std::string> facts = {
-      fmt::format("touched  {:.0f} % of it", 100 * judged.touched)};
+  std::vector<std::string> facts = {fmt::format("touched  {:.0f} % of it", 100 * judged.touched)};
   if (judged.cells > 0) {
     facts.push_back(fmt::format("rms error  {:.2f} mm", judged.rms_m * kMm));
     facts.push_back(fmt::format("bias  {:.2f} mm", judged.mean_m * kMm));

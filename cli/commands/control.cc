@@ -83,6 +83,21 @@ void PrintNoise(Output& out, const Json& noise) {
   line("joint angle", "joint_rad", 2, kDegrees, "deg");
   line("object position", "object_position_m", 2, 1e3, "mm");
   line("object orientation", "object_rotation_rad", 2, kDegrees, "deg");
+  // What the presets do not have is shown where it is set.
+  const auto more = [&](const char* what, const char* key, int digits, double scale,
+                        const char* unit) {
+    if (At(noise, key).is_number() && At(noise, key) != 0.0) line(what, key, digits, scale, unit);
+  };
+  more("position bias", "position_bias_m", 2, 1e3, "mm");
+  more("force bias", "force_bias_n", 3, 1, "N");
+  more("joint bias", "joint_bias_rad", 2, kDegrees, "deg");
+  more("object bias", "object_bias_m", 2, 1e3, "mm");
+  more("position drift", "position_drift_m", 2, 1e3, "mm after 1 s");
+  more("force drift", "force_drift_n", 3, 1, "N after 1 s");
+  more("object drift", "object_drift_m", 2, 1e3, "mm after 1 s");
+  more("dropout", "dropout", 1, 100, "%");
+  more("length of a gap", "dropout_gap_s", 3, 1, "s");
+  more("latency", "latency_s", 1, 1e3, "ms");
 }
 
 ExitCode SendNoise(Context& context, const char* method, const Json& params) {
@@ -126,10 +141,11 @@ ExitCode Push(Context& context, const Invocation& invocation) {
 }  // namespace
 
 std::vector<CommandSpec> ControlCommands() {
-  CommandSpec preset = MethodCommand("noise.set", kGroup, NoisePreset,
-                                     {.positional = {"preset"},
-                                      .hidden = {"position_m", "normal_rad", "force_n", "joint_rad",
-                                                 "object_position_m", "object_rotation_rad"}});
+  std::vector<std::string_view> levels;
+  for (const ParamSpec& param : FindMethod("noise.set")->params)
+    if (param.name != "preset") levels.push_back(param.name);
+  CommandSpec preset =
+      MethodCommand("noise.set", kGroup, NoisePreset, {.positional = {"preset"}, .hidden = levels});
   preset.words = "noise preset";
   preset.sentence = "set all noise levels to a preset";
   preset.args.front().required = true;

@@ -35,6 +35,7 @@ constexpr Example kExamples[] = {
     {"reset", "regrasp reset --object egg", "a new run with another object"},
     {"noise show", "regrasp noise show", "all levels"},
     {"noise set", "regrasp noise set --position 2 --normal 5", "contacts off by 2 mm and 5 degrees"},
+    {"noise set", "regrasp noise set --position-bias 1 --latency 0.005", "a sensor mounted wrongly, and late"},
     {"noise preset", "regrasp noise preset coarse", "every level at once"},
     {"noise off", "regrasp noise off", "perfect sensors"},
     {"push", "regrasp push --force 0,0.3,0 --duration 0.2", "0.3 N along y for 0.2 s"},

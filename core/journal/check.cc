@@ -197,6 +197,16 @@ void CheckRange(const char* what, double value, double min, double max) {
   throw JournalError(text);
 }
 
+namespace {
+
+void CheckNoise(const NoiseLevels& noise) {
+  CheckRange("dropout", noise.dropout, 0, 0.9);
+  CheckRange("dropout_gap_s", noise.dropout_gap_s, 0, 1);
+  CheckRange("latency_s", noise.latency_s, 0, 0.02);
+}
+
+}  // namespace
+
 void CheckConfig(const SessionConfig& config) {
   CheckRange("dt_s", config.world.dt, 1e-5, 1e-2);
   const Plausible plausible;
@@ -204,6 +214,7 @@ void CheckConfig(const SessionConfig& config) {
   NoiseLevels noise = config.noise;
   Fields(plausible, world);
   Fields(plausible, noise);
+  CheckNoise(noise);
   CheckParameters(config.parameters);
   CheckHand(config.model.hand);
   CheckObject(config.model.object);
@@ -241,6 +252,7 @@ void CheckEntry(const JournalEntry& entry, const SessionConfig& config) {
   const Plausible plausible;
   NoiseLevels noise = c.noise;
   Fields(plausible, noise);
+  CheckNoise(noise);
   if (c.type != CommandType::kParameter) return;
   const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(c.parameter)];
   for (int i = 0; i < info.size(); ++i)

@@ -16,6 +16,8 @@ enum Stream : std::uint64_t {
   kJointStream,
   kPosePositionStream,
   kPoseRotationStream,
+  kBiasStream,
+  kObjectDriftStream,
 };
 
 /// Index of the period of length 1/rate that contains the tick. The slack lets a period that begins
@@ -76,6 +78,12 @@ void Sensors::Reseed(std::uint64_t seed) {
   joint_stream_ = RandomStream(seed, kJointStream);
   pose_position_stream_ = RandomStream(seed, kPosePositionStream);
   pose_rotation_stream_ = RandomStream(seed, kPoseRotationStream);
+  object_drift_stream_ = RandomStream(seed, kObjectDriftStream);
+  RandomStream biases(seed, kBiasStream);
+  object_bias_ = biases.Normal3();
+  joint_biases_.resize(hand_->num_joints());
+  for (double& bias : joint_biases_) bias = biases.Normal();
+  for (int f = 0; f < hand_->num_fingers(); ++f) errors_[f].Reseed(seed, f);
 }
 
 void Sensors::SetNoise(const NoiseLevels& levels) {
@@ -95,13 +103,15 @@ const SensorReading& Sensors::Read(std::int64_t tick, const WorldState& truth) {
 
   ReadFingertips(truth);
   for (int j = 0; j < hand_->num_joints(); ++j)
-    reading_.q[j] = truth.q[j] + levels_.joint_rad * joint_stream_.Normal();
+    reading_.q[j] = truth.q[j] + levels_.joint_bias_rad * joint_biases_[j] +
+                    levels_.joint_rad * joint_stream_.Normal();
   ReadObject(tick, truth);
   return reading_;
 }
 
 void Sensors::ReadFingertips(const WorldState& truth) {
-  if (levels_.taxel_pitch_m > 0) ForwardKinematics(*hand_, truth.q, &kinematics_);
+  const bool systematic = levels_.systematic();
+  if (levels_.taxel_pitch_m > 0 || systematic) ForwardKinematics(*hand_, truth.q, &kinematics_);
   for (int f = 0; f < hand_->num_fingers(); ++f) {
     const Vector3d position_noise = levels_.position_m * position_stream_.Normal3();
     const double tilt_a = levels_.normal_rad * normal_stream_.Normal();
@@ -110,14 +120,15 @@ void Sensors::ReadFingertips(const WorldState& truth) {
 
     FingertipReading& out = reading_.fingertips[f];
     out = TrueFingertip(truth, f);
+    const Isometry3d& X_WL = kinematics_.X_WL[hand_->fingers[f].tip_link];
     if (!out.in_contact) {
       out = FingertipReading{};
+      errors_[f].Apply(levels_, X_WL, sample_s(), &out);
       continue;
     }
     out.p_WC += position_noise;
     out.force = std::max(0.0, out.force + force_noise);
     if (levels_.taxel_pitch_m > 0) {
-      const Isometry3d& X_WL = kinematics_.X_WL[hand_->fingers[f].tip_link];
       const Vector3d p_LC = X_WL.inverse() * out.p_WC;
       const auto taxels = MakeTaxels(tips_[f], levels_.taxel_pitch_m);
       const Taxel* nearest =
@@ -128,12 +139,16 @@ void Sensors::ReadFingertips(const WorldState& truth) {
       out.normal_W = -(X_WL.linear() * nearest->outward_L).normalized();
     }
     out.normal_W = Tilted(out.normal_W, tilt_a, tilt_b);
+    errors_[f].Apply(levels_, X_WL, sample_s(), &out);
   }
 }
 
 void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   const Vector3d translation = levels_.object_position_m * pose_position_stream_.Normal3();
   const Vector3d rotation = levels_.object_rotation_rad * pose_rotation_stream_.Normal3();
+  if (levels_.object_drift_m > 0)
+    object_drift_ +=
+        levels_.object_drift_m * std::sqrt(sample_s()) * object_drift_stream_.Normal3();
   if (levels_.object_rate_hz > 0) {
     const std::int64_t frame = PeriodIndex(tick, dt_, levels_.object_rate_hz);
     if (frame == last_pose_frame_) return;
@@ -145,7 +160,7 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   for (int i = kept - 1; i > 0; --i) pose_frames_[i] = pose_frames_[i - 1];
   num_pose_frames_ = std::min(num_pose_frames_ + 1, kept);
   Pose& newest = pose_frames_[0];
-  newest.p = truth.p_WO + translation;
+  newest.p = truth.p_WO + translation + levels_.object_bias_m * object_bias_ + object_drift_;
   newest.q = truth.q_WO;
   if (rotation != Vector3d::Zero())
     newest.q = (FromRotationVector(rotation) * truth.q_WO).normalized();

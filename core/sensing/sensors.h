@@ -8,6 +8,7 @@
 /// Sensors sample at kSensorRateHz whatever the physics step: a reading is held until the next
 /// sample is due (at a step longer than a sample, every tick samples once).
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -15,6 +16,7 @@
 #include "core/common/random.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/kinematics.h"
+#include "core/sensing/fingertip_errors.h"
 #include "core/sensing/noise.h"
 #include "core/sensing/sensor_reading.h"
 #include "core/sensing/taxels.h"
@@ -42,8 +44,8 @@ class Sensors {
   void Reseed(std::uint64_t seed);
 
   /// One reading per tick; `tick` never decreases. A fingertip feels TrueFingertip() and its noise.
-  /// Every stream advances by the same number of draws each
-  /// sample, whatever touches.
+  /// Streams of white noise advance by the same number of draws each sample, whatever touches;
+  /// those of drift and dropout while their level is above 0.
   ///
   /// With taxels (taxel_pitch_m > 0) the contact position, after its noise, snaps to the nearest
   /// taxel centre, and the normal is opposite to that taxel's outward direction (see taxels.h).
@@ -62,6 +64,11 @@ class Sensors {
     v("joint_stream", joint_stream_);
     v("pose_position_stream", pose_position_stream_);
     v("pose_rotation_stream", pose_rotation_stream_);
+    v("joint_biases", joint_biases_);
+    v("object_bias", object_bias_);
+    v("object_drift", object_drift_);
+    v("object_drift_stream", object_drift_stream_);
+    v("errors", errors_);
     v("last_sample", last_sample_, kCountOrNone);
     v("pose_frames", pose_frames_);
     v("num_pose_frames", num_pose_frames_, FieldRange{0, kMaxPoseDelay + 1.0});
@@ -83,6 +90,8 @@ class Sensors {
       v("q", q);
     }
   };
+  /// From one sample to the next [s].
+  double sample_s() const { return std::max(dt_, 1 / kSensorRateHz); }
   void ReadFingertips(const WorldState& truth);
   void ReadObject(std::int64_t tick, const WorldState& truth);
 
@@ -91,12 +100,17 @@ class Sensors {
   NoiseLevels levels_;
   RandomStream position_stream_, normal_stream_, force_stream_, joint_stream_,
       pose_position_stream_, pose_rotation_stream_;
+  JointVector joint_biases_;                  // in standard deviations
+  Vector3d object_bias_ = Vector3d::Zero();   // the same, in W
+  Vector3d object_drift_ = Vector3d::Zero();  // [m], in W
+  RandomStream object_drift_stream_;
+  std::array<FingertipErrors, kMaxFingers> errors_;
   std::int64_t last_sample_ = -1;
   std::array<Pose, kMaxPoseDelay + 1> pose_frames_;  ///< newest first
   int num_pose_frames_ = 0;
   std::int64_t last_pose_frame_ = -1;
   std::array<TipAxes, kMaxFingers> tips_;
-  KinematicsData kinematics_;  ///< of the truth; used only with taxels
+  KinematicsData kinematics_;  ///< of the truth; used only with taxels and systematic errors
   SensorReading reading_;
 };
 

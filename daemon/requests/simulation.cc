@@ -283,12 +283,24 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kNoise);
   NoiseLevels levels = service.accepted.noise;
   if (params.Has("preset")) levels = *NoisePreset(params.String("preset"));
-  levels.position_m = params.Number("position_m", levels.position_m);
-  levels.normal_rad = params.Number("normal_rad", levels.normal_rad);
-  levels.force_n = params.Number("force_n", levels.force_n);
-  levels.joint_rad = params.Number("joint_rad", levels.joint_rad);
-  levels.object_position_m = params.Number("object_position_m", levels.object_position_m);
-  levels.object_rotation_rad = params.Number("object_rotation_rad", levels.object_rotation_rad);
+  constexpr std::pair<const char*, double NoiseLevels::*> kLevels[] = {
+      {"position_m", &NoiseLevels::position_m},
+      {"normal_rad", &NoiseLevels::normal_rad},
+      {"force_n", &NoiseLevels::force_n},
+      {"joint_rad", &NoiseLevels::joint_rad},
+      {"object_position_m", &NoiseLevels::object_position_m},
+      {"object_rotation_rad", &NoiseLevels::object_rotation_rad},
+      {"position_bias_m", &NoiseLevels::position_bias_m},
+      {"force_bias_n", &NoiseLevels::force_bias_n},
+      {"joint_bias_rad", &NoiseLevels::joint_bias_rad},
+      {"object_bias_m", &NoiseLevels::object_bias_m},
+      {"position_drift_m", &NoiseLevels::position_drift_m},
+      {"force_drift_n", &NoiseLevels::force_drift_n},
+      {"object_drift_m", &NoiseLevels::object_drift_m},
+      {"dropout", &NoiseLevels::dropout},
+      {"dropout_gap_s", &NoiseLevels::dropout_gap_s},
+      {"latency_s", &NoiseLevels::latency_s}};
+  for (const auto& [name, level] : kLevels) levels.*level = params.Number(name, levels.*level);
   Command command = Of(CommandType::kNoise);
   command.noise = levels;
   const std::uint64_t barrier = service.PostCommand(std::move(command));

@@ -212,7 +212,17 @@ Json NoiseJson(const NoiseLevels& n) {
           {"object_rotation_rad", n.object_rotation_rad},
           {"taxel_pitch_m", n.taxel_pitch_m},
           {"object_rate_hz", n.object_rate_hz},
-          {"object_delay_frames", n.object_delay_frames}};
+          {"object_delay_frames", n.object_delay_frames},
+          {"position_bias_m", n.position_bias_m},
+          {"force_bias_n", n.force_bias_n},
+          {"joint_bias_rad", n.joint_bias_rad},
+          {"object_bias_m", n.object_bias_m},
+          {"position_drift_m", n.position_drift_m},
+          {"force_drift_n", n.force_drift_n},
+          {"object_drift_m", n.object_drift_m},
+          {"dropout", n.dropout},
+          {"dropout_gap_s", n.dropout_gap_s},
+          {"latency_s", n.latency_s}};
 }
 
 Json JobJson(const JobRecord& job, const HandModel& hand) {
