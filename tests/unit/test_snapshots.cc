@@ -409,7 +409,9 @@ TEST(Canvas, PdfHasThePrintedSizeAndEmbedsItsFont) {
 
 TEST(Canvas, PrintedTextIsSevenPointsHigh) {
   for (const double mm : {165.0, 180.0}) {
-    const Canvas canvas(SizeOf({.width_mm = mm}), "x.pdf");
+    PlotOptions options;
+    options.width_mm = mm;
+    const Canvas canvas(SizeOf(options), "x.pdf");
     const double pt_per_unit = mm * 72 / 25.4 / canvas.width();
     EXPECT_GT(15 * pt_per_unit, 7 - 1e-2) << mm;  // 15: the smallest text of all pictures
   }
