@@ -27,8 +27,9 @@ Vector3d Gyroscopic(const Matrix3d& R, const Matrix3d& I, const Vector3d& w_W, d
 }  // namespace
 
 FastStep::FastStep(const HandModel& hand, const Articulation& articulation,
-                   const ObjectModel& object, const WorldConfig& config)
-    : object_(object), config_(config), dynamics_(hand, articulation) {
+                   const ObjectModel& object, const WorldConfig& config,
+                   const std::vector<Following>& following)
+    : object_(object), config_(config), dynamics_(hand, articulation, following) {
   const double hk = config.dt * config.contact_stiffness;
   contact_erp_ = hk / (hk + config.contact_damping);
   contact_softness_ = 1.0 / (hk + config.contact_damping);
@@ -40,10 +41,11 @@ const KinematicsData& FastStep::SetPosture(const JointVector& q) {
 }
 
 void FastStep::FreeMotion(const Load& load, const WorldState& state) {
-  dynamics_.Update(state.qdot, load.gravity_W);
-  rate_ = load.torque - dynamics_.bias();
+  // (M + dt D) (qdot' - qdot) = dt (tau - b - D qdot): damping D acts at the rate after the step.
+  dynamics_.Update(state.qdot, load.gravity_W, config_.dt * load.damping);
+  rate_ = dynamics_.Fold(load.torque - load.damping.cwiseProduct(state.qdot)) - dynamics_.bias();
   dynamics_.Solve(&rate_);
-  rate_ = state.qdot + config_.dt * rate_;
+  rate_ = dynamics_.Driven(state.qdot) + config_.dt * rate_;
 
   R_WO_ = state.q_WO.toRotationMatrix();
   v_.setZero();
@@ -121,8 +123,7 @@ void FastStep::Integrate(WorldState* state) {
     if (r < object_row_count_) object_impulse += dt * solver_.force[r] * object_rows_[r];
   }
   dynamics_.Finish(&impulse);
-  state->qdot = rate_ + impulse;
-  state->q += dt * state->qdot;
+  dynamics_.Move(rate_ + impulse, dt, &state->q, &state->qdot);
   state->v_WO = v_ + root_mass_inverse_ * object_impulse.head<3>();
   state->w_WO = w_ + root_inertia_inverse_.transpose() * object_impulse.tail<3>();
   state->p_WO += dt * state->v_WO;

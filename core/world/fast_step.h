@@ -16,12 +16,14 @@ namespace regrasp {
 
 class FastStep {
  public:
+  /// `following`: how coupled joints follow (HandDynamics).
   FastStep(const HandModel& hand, const Articulation& articulation, const ObjectModel& object,
-           const WorldConfig& config);
+           const WorldConfig& config, const std::vector<Following>& following);
 
   /// What acts during one step, besides the contacts.
   struct Load {
-    JointVector torque;                     ///< drives, damping and stops [N m]
+    JointVector torque;   ///< drives, damping and stops [N m]
+    JointVector damping;  ///< and so much more, at the rates after the step [N m s/rad]
     Vector3d push_W = Vector3d::Zero();     ///< on the object [N]
     Vector3d gravity_W = Vector3d::Zero();  ///< [m/s²]
     double friction = 0;

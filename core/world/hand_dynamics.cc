@@ -1,12 +1,18 @@
 #include "core/world/hand_dynamics.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
 namespace regrasp {
 
-HandDynamics::HandDynamics(const HandModel& hand, const Articulation& articulation)
-    : hand_(hand), n_(hand.num_joints()), bodies_(articulation.bodies) {
+HandDynamics::HandDynamics(const HandModel& hand, const Articulation& articulation,
+                           const std::vector<Following>& following)
+    : hand_(hand),
+      n_(static_cast<int>(hand.joints.size())),
+      driven_(n_),
+      following_(following),
+      bodies_(articulation.bodies) {
   body_.assign(static_cast<std::size_t>(n_), -1);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     body_[hand.links[bodies_[b].link].parent_joint] = static_cast<int>(b);
@@ -15,13 +21,58 @@ HandDynamics::HandDynamics(const HandModel& hand, const Articulation& articulati
     parent_.push_back(parent);
     chain_.push_back((parent >= 0 ? chain_[parent] : 0u) | (1u << i));
   }
-  bias_ = JointVector::Zero(n_);
+  folded_ = false;
+  if (!following_.empty()) {
+    driven_ = 0;
+    for (const Following& f : following_) driven_ = std::max(driven_, f.driven + 1);
+    folded_ = driven_ < n_;
+  }
+  above_ = parent_;
+  if (folded_) {  // a driver may have followers in several fingers: all may couple
+    above_.resize(static_cast<std::size_t>(driven_));
+    for (int i = 0; i < driven_; ++i) above_[i] = i - 1;
+  }
+  bias_ = JointVector::Zero(driven_);
   factor_.setZero();
+}
+
+JointVector HandDynamics::Fold(const JointVector& torque) const {
+  if (!folded_) return torque;
+  JointVector folded = JointVector::Zero(driven_);
+  for (int i = 0; i < n_; ++i) folded[following_[i].driven] += following_[i].ratio * torque[i];
+  return folded;
+}
+
+JointVector HandDynamics::Driven(const JointVector& all) const {
+  if (!folded_) return all;
+  JointVector driven = JointVector::Zero(driven_);
+  for (int i = 0; i < n_; ++i)
+    if (following_[i].ratio == 1 && following_[i].offset == 0)
+      driven[following_[i].driven] = all[i];
+  return driven;
+}
+
+void HandDynamics::Move(const JointVector& rate, double dt, JointVector* q,
+                        JointVector* qdot) const {
+  if (!folded_) {
+    *qdot = rate;
+    *q += dt * rate;
+    return;
+  }
+  JointVector angle = Driven(*q);
+  angle += dt * rate;
+  for (int i = 0; i < n_; ++i) {
+    const Following& f = following_[i];
+    (*q)[i] = f.ratio * angle[f.driven] + f.offset;
+    (*qdot)[i] = f.ratio * rate[f.driven];
+  }
 }
 
 void HandDynamics::SetPosture(const JointVector& q) { ForwardKinematics(hand_, q, &kinematics_); }
 
-void HandDynamics::Update(const JointVector& qdot, const Vector3d& gravity_W) {
+void HandDynamics::Update(const JointVector& qdot, const Vector3d& gravity_W,
+                          const JointVector& extra) {
+  JointVector bias = JointVector::Zero(n_);
   const Vector3d zero = Vector3d::Zero(), fall = -gravity_W;
   for (int i = 0; i < n_; ++i) {
     const Vector3d& axis = kinematics_.axis_W[i];
@@ -51,7 +102,7 @@ void HandDynamics::Update(const JointVector& qdot, const Vector3d& gravity_W) {
   }
   for (int i = n_ - 1; i >= 0; --i) {
     const Vector3d& axis = kinematics_.axis_W[i];
-    bias_[i] = axis.dot(torque_[i]) + lever_[i].dot(force_[i]);
+    bias[i] = axis.dot(torque_[i]) + lever_[i].dot(force_[i]);
     const Inertia& I = inertia_[i];
     const Vector3d f = I.mass * lever_[i] + axis.cross(I.moment);
     const Vector3d n = I.J * axis + I.moment.cross(lever_[i]);
@@ -65,13 +116,34 @@ void HandDynamics::Update(const JointVector& qdot, const Vector3d& gravity_W) {
     force_[p] += force_[i];
     torque_[p] += torque_[i];
   }
-  // M = LᵀL in place; only joints of one chain couple.
-  for (int k = n_ - 1; k >= 0; --k) {
+  for (int i = 0; i < n_; ++i) factor_(i, i) += extra[i];
+  bias_ = Fold(bias);
+  if (folded_) FoldMassMatrix();
+  Factorise();
+}
+
+// The lower half of Gᵀ M G from the entries of M that chains couple.
+void HandDynamics::FoldMassMatrix() {
+  Eigen::Matrix<double, kMaxJoints, kMaxJoints> folded;
+  folded.setZero();
+  for (int i = 0; i < n_; ++i)
+    for (int j = i; j >= 0; j = parent_[j]) {
+      const Following &a = following_[i], &b = following_[j];
+      const double m = a.ratio * b.ratio * factor_(i, j);
+      folded(a.driven, b.driven) += m;
+      if (i != j) folded(b.driven, a.driven) += m;
+    }
+  factor_.template triangularView<Eigen::Lower>() = folded;
+}
+
+// M = LᵀL in place; only joints that `above_` leads to couple.
+void HandDynamics::Factorise() {
+  for (int k = driven_ - 1; k >= 0; --k) {
     factor_(k, k) = std::sqrt(factor_(k, k));
     inverse_diagonal_[k] = 1.0 / factor_(k, k);
-    for (int i = parent_[k]; i >= 0; i = parent_[i]) factor_(k, i) *= inverse_diagonal_[k];
-    for (int i = parent_[k]; i >= 0; i = parent_[i])
-      for (int j = i; j >= 0; j = parent_[j]) factor_(i, j) -= factor_(k, i) * factor_(k, j);
+    for (int i = above_[k]; i >= 0; i = above_[i]) factor_(k, i) *= inverse_diagonal_[k];
+    for (int i = above_[k]; i >= 0; i = above_[i])
+      for (int j = i; j >= 0; j = above_[j]) factor_(i, j) -= factor_(k, i) * factor_(k, j);
   }
 }
 
@@ -80,22 +152,22 @@ void HandDynamics::Transpose(std::uint32_t joints, double* x) const {
     const int i = 31 - std::countl_zero(joints);
     joints &= ~(1u << i);
     x[i] *= inverse_diagonal_[i];
-    for (int j = parent_[i]; j >= 0; j = parent_[j]) x[j] -= factor_(i, j) * x[i];
+    for (int j = above_[i]; j >= 0; j = above_[j]) x[j] -= factor_(i, j) * x[i];
   }
 }
 
 void HandDynamics::Finish(JointVector* x) const {
-  for (int i = 0; i < n_; ++i) {
+  for (int i = 0; i < driven_; ++i) {
     double sum = (*x)[i];
-    for (int j = parent_[i]; j >= 0; j = parent_[j]) sum -= factor_(i, j) * (*x)[j];
+    for (int j = above_[i]; j >= 0; j = above_[j]) sum -= factor_(i, j) * (*x)[j];
     (*x)[i] = sum * inverse_diagonal_[i];
   }
 }
 
 void HandDynamics::Solve(JointVector* x) const {
-  for (int i = n_ - 1; i >= 0; --i) {
+  for (int i = driven_ - 1; i >= 0; --i) {
     (*x)[i] *= inverse_diagonal_[i];
-    for (int j = parent_[i]; j >= 0; j = parent_[j]) (*x)[j] -= factor_(i, j) * (*x)[i];
+    for (int j = above_[i]; j >= 0; j = above_[j]) (*x)[j] -= factor_(i, j) * (*x)[i];
   }
   Finish(x);
 }
@@ -104,14 +176,22 @@ void HandDynamics::MakeRows(int link, const Vector3d& p_W, double sign, const Jo
                             int count, const Vector3d* axes_W, Row* rows, double* rate) const {
   const int tip = hand_.links[link].parent_joint;
   for (int k = 0; k < count; ++k) {
-    rows[k].joints = tip >= 0 ? chain_[tip] : 0u;
+    rows[k].joints = tip < 0 ? 0u : folded_ ? ~0u >> (32 - driven_) : chain_[tip];
     rate[k] = 0;
+    if (folded_) std::fill_n(rows[k].y.begin(), driven_, 0.0);
   }
   for (int j = tip; j >= 0; j = parent_[j]) {
     const Vector3d moved = sign * kinematics_.axis_W[j].cross(p_W - kinematics_.p_WJ[j]);
     for (int k = 0; k < count; ++k) {
-      rows[k].y[j] = axes_W[k].dot(moved);
-      rate[k] += rows[k].y[j] * qdot[j];
+      const double along = axes_W[k].dot(moved);
+      if (folded_) {
+        const Following& f = following_[j];
+        rows[k].y[f.driven] += f.ratio * along;
+        rate[k] += f.ratio * along * qdot[f.driven];
+      } else {
+        rows[k].y[j] = along;
+        rate[k] += along * qdot[j];
+      }
     }
   }
   for (int k = 0; k < count; ++k) Transpose(rows[k].joints, rows[k].y.data());

@@ -19,19 +19,38 @@
 
 namespace regrasp {
 
+/// How a joint moves with the driven ones: q = ratio q(driven) + offset [rad].
+struct Following {
+  int driven = -1;
+  double ratio = 1, offset = 0;
+};
+
+/// "Joint" below is one of `hand`; where some follow others (`following`, one per joint of `hand`),
+/// everything in generalised coordinates, M, b, x, rates of rows, is of the driven joints alone:
+/// M := Gᵀ M G, b := Gᵀ b with qdot = G qdot_driven.
 class HandDynamics {
  public:
-  /// Keeps a reference to `hand`.
-  HandDynamics(const HandModel& hand, const Articulation& articulation);
+  /// Keeps a reference to `hand`. Without `following` every joint is driven.
+  HandDynamics(const HandModel& hand, const Articulation& articulation,
+               const std::vector<Following>& following = {});
+
+  /// Gᵀ x: torques of all joints as torques of the driven ones.
+  JointVector Fold(const JointVector& torque) const;
+  /// The driven joints' share of a vector of all joints.
+  JointVector Driven(const JointVector& all) const;
+  /// Moves all joints as the driven ones move: q += dt qdot, qdot := G rate; followers stand where
+  /// their drivers put them.
+  void Move(const JointVector& rate, double dt, JointVector* q, JointVector* qdot) const;
 
   /// Moves the hand to the joint angles `q` [rad].
   void SetPosture(const JointVector& q);
   const KinematicsData& kinematics() const { return kinematics_; }
 
   /// Mass matrix M and bias torques b at the present posture, for the joint rates `qdot` [rad/s]
-  /// and gravity [m/s²]: M qddot + b = tau. The gyroscopic torque of a link, below 1e-5 N m at
+  /// and gravity [m/s²]: M qddot + b = tau. `extra` [kg m²] is added to M's diagonal, joint by
+  /// joint: what is taken implicitly. The gyroscopic torque of a link, below 1e-5 N m at
   /// 1 rad/s, is left out, as in the ODE world.
-  void Update(const JointVector& qdot, const Vector3d& gravity_W);
+  void Update(const JointVector& qdot, const Vector3d& gravity_W, const JointVector& extra);
   const JointVector& bias() const { return bias_; }
 
   /// x := M⁻¹ x.
@@ -44,7 +63,8 @@ class HandDynamics {
     std::array<double, kMaxJoints> y;  ///< only the entries of `joints` are set
   };
   /// Sets row k to `sign` times the velocity along `axes_W[k]` of the point `p_W` [m] of `link`;
-  /// `rate[k]` becomes J qdot [m/s]. The palm gives an empty row and no rate.
+  /// `rate[k]` becomes J qdot [m/s] (`qdot` of the driven joints). The palm gives an empty row and
+  /// no rate.
   void MakeRows(int link, const Vector3d& p_W, double sign, const JointVector& qdot, int count,
                 const Vector3d* axes_W, Row* rows, double* rate) const;
   /// `a` += `b`, of the same constraint.
@@ -64,11 +84,17 @@ class HandDynamics {
   };
 
   void Transpose(std::uint32_t joints, double* x) const;
+  void FoldMassMatrix();
+  void Factorise();
 
   const HandModel& hand_;
-  int n_;
-  std::vector<int> parent_;           // joint that moves the parent link, or -1
-  std::vector<int> body_;             // body that a joint carries, or -1
+  int n_;       // joints
+  int driven_;  // of them
+  std::vector<Following> following_;
+  bool folded_;
+  std::vector<int> above_;   // driven joints: the next that the factor couples it with, or -1
+  std::vector<int> parent_;  // joint that moves the parent link, or -1
+  std::vector<int> body_;    // body that a joint carries, or -1
   std::vector<std::uint32_t> chain_;  // the joint and those before it
   std::vector<BodyPlan> bodies_;
   KinematicsData kinematics_;

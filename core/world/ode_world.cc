@@ -170,7 +170,25 @@ void OdeWorld::Hold(bool on) {
   held_ = on;
 }
 
+/// A motor that holds rate 0 with an unbounded torque and the softness 1 / D is a damper D.
+void OdeWorld::SetDamping(const JointVector& damping) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const JointPlan& plan = articulation_.joints[i];
+    const auto set = [&](int joint, int group) {
+      const double D = damping[joint];
+      const dReal most = D > 0 ? dInfinity : 0;
+      const dReal softness = D > 0 ? 1 / D : config_.joint_cfm;
+      const auto param = plan.second < 0 ? dJointSetHingeParam : dJointSetUniversalParam;
+      param(joints_[i], dParamFMax + group, most);
+      param(joints_[i], dParamCFM + group, softness);
+    };
+    set(plan.first, 0);
+    if (plan.second >= 0) set(plan.second, dParamGroup);
+  }
+}
+
 void OdeWorld::ApplyLoad(const Load& load) {
+  SetDamping(load.damping);
   dWorldSetGravity(world_, load.gravity_W.x(), load.gravity_W.y(), load.gravity_W.z());
   if (mass_ != load.mass) {
     mass_ = load.mass;

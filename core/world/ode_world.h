@@ -33,9 +33,10 @@ class OdeWorld {
 
   /// What acts during one step of dWorldStep, besides the contacts.
   struct Load {
-    const JointVector& torque;  ///< drives, damping and stops [N m]
-    Vector3d push_W;            ///< on the object [N]
-    Vector3d gravity_W;         ///< [m/s²]
+    const JointVector& torque;   ///< drives, damping and stops [N m]
+    const JointVector& damping;  ///< and so much more, at the rates after the step [N m s/rad]
+    Vector3d push_W;             ///< on the object [N]
+    Vector3d gravity_W;          ///< [m/s²]
     double friction;
     double mass;  ///< of the object [kg]
     bool held;    ///< the stand-in holds the object where it is
@@ -58,6 +59,7 @@ class OdeWorld {
   Vector3d LinkAngularVelocity(int link) const;
   void Hold(bool on);
   void ApplyLoad(const Load& load);
+  void SetDamping(const JointVector& damping);
   void MakeContacts(const FixedVector<ObjectHit, kMaxObjectContacts>& hits,
                     const FixedVector<LinkHit, kMaxLinkHits>& link_hits, double friction);
   void Read(WorldState* state) const;

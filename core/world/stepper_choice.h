@@ -15,8 +15,9 @@ struct StepperChoice {
 };
 
 /// Closes the hand of a scenario with both steppers from its preshape: first in the air, then on
-/// the object, which the stand-in holds; 0.3 s in all at dt = 1 ms. The fast step is chosen where
-/// it neither faults nor ends more than `kAgreement` of the motion away from the exact one.
+/// the object, which the stand-in holds; 0.3 s in all at dt = 1 ms. Then the fast step moves it
+/// freely for 1 s. The fast step is chosen where it neither faults nor ends more than `kAgreement`
+/// of the motion away from the exact one, and where the exact one faults.
 /// Deterministic; a few tens of milliseconds. `config.stepper` does not matter.
 StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& config);
 

@@ -29,6 +29,13 @@ Transmissions::Transmissions(const HandModel& hand, double stiffness, double dam
                         joint.offset, std::min(stiffness, 0.2 * both / (dt * dt)),
                         std::min(damping, 0.5 * both / dt)});
   }
+  if (springs_.empty()) return;
+  following_.resize(place_.size());
+  for (int i = 0; i < num_driven_; ++i)
+    following_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])].driven = i;
+  for (std::size_t j = static_cast<std::size_t>(num_driven_); j < hand.joints.size(); ++j)
+    following_[static_cast<std::size_t>(place_[j])] = {hand.joints[j].driver, hand.joints[j].ratio,
+                                                       hand.joints[j].offset};
 }
 
 JointVector Transmissions::ToPlant(const JointVector& driven) const {

@@ -1,14 +1,15 @@
 #pragma once
 
-/// Coupled joints in the simulation. The steppers know independent joints only, parents before
-/// children: they get the plant, the hand with every joint on its own, and each coupled joint is
-/// held at ratio q(driver) + offset by an elastic transmission, a spring and damper like those of
-/// the joint stops. A tendon yields by as much.
+/// Coupled joints in the simulation. Both steppers get the plant, the hand with every joint on its
+/// own, parents before children. In the fast step a coupled joint moves exactly with its driver
+/// (Following). The exact step knows independent joints only: there an elastic transmission, a
+/// spring and damper like those of the joint stops, holds it at ratio q(driver) + offset.
 
 #include <vector>
 
 #include "core/common/limits.h"
 #include "core/hand/hand_model.h"
+#include "core/world/hand_dynamics.h"
 
 namespace regrasp {
 
@@ -23,6 +24,8 @@ class Transmissions {
   /// The same hand without couplings: joint i moves link i + 1. Fingers name no joints.
   const HandModel& plant() const { return plant_; }
   bool any() const { return !springs_.empty(); }
+  /// By joint of the plant; empty where no joint is coupled.
+  const std::vector<Following>& following() const { return following_; }
   int count() const { return static_cast<int>(springs_.size()); }
 
   /// Values of the driven joints as those of the plant: 0 for coupled joints.
@@ -43,6 +46,7 @@ class Transmissions {
   std::vector<int> place_;  // joint of the hand: joint of the plant
   int num_driven_ = 0;
   std::vector<Spring> springs_;
+  std::vector<Following> following_;
 };
 
 }  // namespace regrasp

@@ -15,9 +15,7 @@
 namespace regrasp {
 namespace {
 
-// Joint stops are a spring-damper outside the range [N m/rad, N m s/rad]. With the armature of 2e-4
-// kg m² h² k / I = .1 and h d / I = .25: well inside the stability limits of the semi-implicit
-// Euler step.
+// Joint stops are a spring-damper outside the range [N m/rad, N m s/rad].
 constexpr double kStopStiffness = 20.0;
 constexpr double kStopDamping = 0.05;
 // Anything faster is a simulation that has exploded [m/s, rad/s].
@@ -66,7 +64,9 @@ struct World::Impl {
   double mass = 0;
   bool stand_in = true;
 
-  JointVector joint_torque;  // drive, damping and stop together [N m]
+  JointVector joint_torque;   // drive, damping and stop together [N m]
+  JointVector joint_damping;  // of joints that need it taken implicitly [N m s/rad]
+  std::vector<bool> implicit;
   FixedVector<ObjectHit, kMaxObjectContacts> object_hits;
   FixedVector<LinkHit, kMaxLinkHits> link_hits;
   FixedVector<ObjectContact, kMaxObjectContacts> last_contacts;
@@ -87,11 +87,18 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
       hand(transmissions.plant()),
       articulation(PlanBodies(hand, config.merge_universal)),
       ode(hand, articulation, object, config, transmissions.AnglesToPlant(q0), X_WO0),
-      fast(hand, articulation, object, config) {
+      fast(hand, articulation, object, config, transmissions.following()) {
   finger_of_tip.assign(hand.links.size(), -1);
   for (int f = 0; f < hand.num_fingers(); ++f) finger_of_tip[hand.fingers[f].tip_link] = f;
   torque = JointVector::Zero(q0.size());
-  joint_torque = JointVector::Zero(hand.num_joints());
+  joint_torque = joint_damping = JointVector::Zero(hand.num_joints());
+  // An explicit damper D and spring K are stable in a semi-implicit Euler step where h² K + 2 h D <
+  // 4 I. The armature is a lower bound of I in any posture of any chain. Up to a quarter of the
+  // bound they are explicit, beyond it implicit, which is stable for any D and K.
+  for (const Joint& joint : hand.joints)
+    implicit.push_back(config.dt * (joint.damping + kStopDamping) +
+                           config.dt * config.dt * kStopStiffness >
+                       joint.armature);
   friction = object.friction;
   mass = object.mass;
   state.torque = joint_torque;
@@ -136,8 +143,10 @@ void World::Impl::CheckState() const {
   for (int k = 0; k < 3; ++k) good = good && sane(state.v_WO[k]) && sane(state.w_WO[k]);
   if (!good)
     throw WorldFault(config.stepper == Stepper::kFast
-                         ? "the simulation has diverged; try stepper exact"
-                         : "the simulation has diverged; try stepper fast");
+                         ? "the simulation has diverged; try --stepper exact, or a larger "
+                           "armature_kg_m2 in the hand's scenario"
+                         : "the simulation has diverged; try --stepper fast, or a larger "
+                           "armature_kg_m2 in the hand's scenario");
 }
 
 void World::Impl::UpdateTorques() {
@@ -145,11 +154,19 @@ void World::Impl::UpdateTorques() {
   for (int i = 0; i < hand.num_joints(); ++i) {
     const Joint& joint = hand.joints[i];
     state.torque[i] = std::clamp(state.torque[i], -joint.effort, joint.effort);
-    joint_torque[i] = state.torque[i] - joint.damping * state.qdot[i];
     const double beyond = state.q[i] - std::clamp(state.q[i], joint.lower, joint.upper);
+    if (implicit[static_cast<std::size_t>(i)]) {
+      // - K (x + h qdot') - D qdot' with the rate qdot' after the step.
+      joint_torque[i] = state.torque[i] - kStopStiffness * beyond;
+      joint_damping[i] = joint.damping;
+      if (beyond != 0) joint_damping[i] += kStopDamping + config.dt * kStopStiffness;
+      continue;
+    }
+    joint_torque[i] = state.torque[i] - joint.damping * state.qdot[i];
     if (beyond != 0) joint_torque[i] -= kStopStiffness * beyond + kStopDamping * state.qdot[i];
   }
-  transmissions.AddTorques(state.q, state.qdot, &joint_torque);
+  if (config.stepper == Stepper::kExact)
+    transmissions.AddTorques(state.q, state.qdot, &joint_torque);
 }
 
 // The contacts of this step. Each keeps the force that the last step found between the same two
@@ -179,13 +196,14 @@ void World::Impl::FindContacts() {
 
 void World::Impl::Advance() {
   if (config.stepper == Stepper::kExact) {
-    ode.Step({joint_torque, push_W, gravity_W, friction, mass, stand_in}, object_hits, link_hits,
-             &state);
+    ode.Step({joint_torque, joint_damping, push_W, gravity_W, friction, mass, stand_in},
+             object_hits, link_hits, &state);
     CheckState();
     return;
   }
-  const KinematicsData& links = fast.Advance(
-      {joint_torque, push_W, gravity_W, friction, mass, stand_in}, object_hits, link_hits, &state);
+  const KinematicsData& links =
+      fast.Advance({joint_torque, joint_damping, push_W, gravity_W, friction, mass, stand_in},
+                   object_hits, link_hits, &state);
   CheckState();
   ode.SetPoses(links, state);
 }
