@@ -8,7 +8,8 @@
 //   claims move      [--seeds N] [--first S] [--angle DEG] [--offset MM] [--axis X,Y,Z | all]
 //                    one motion about and along the axis, without a regrasp
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
-// Common: --noise PRESET --object NAME --tilt DEG (of the palm) --set NAME=VALUE (repeatable)
+// Common: --hand NAME|FILE --noise PRESET --object NAME --tilt DEG (of the palm) --set NAME=VALUE
+// (repeatable)
 // --exact --rows (a line per trial). Trials run in two processes (--jobs N); each is reproducible
 // alone from its seed.
 
@@ -35,7 +36,7 @@ using namespace regrasp;
 namespace {
 
 struct Options {
-  std::string what, noise = "paper", object, criterion = "manipulability",
+  std::string what, hand = "shadow", noise = "paper", object, criterion = "manipulability",
                     estimator = "least_squares", finger;
   int seeds = 5, jobs = 2;
   std::uint64_t first = 1;
@@ -49,7 +50,7 @@ constexpr double kFailed = -1;
 
 SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string& object) {
   SessionConfig config;
-  config.model = LoadScenario("shadow", object, ModelSearchPath());
+  config.model = LoadScenario(o.hand, object, ModelSearchPath());
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
@@ -621,6 +622,8 @@ int Main(int argc, char** argv) {
       o.first = std::stoull(next());
     else if (a == "--seconds")
       o.seconds = std::stod(next());
+    else if (a == "--hand")
+      o.hand = next();
     else if (a == "--noise")
       o.noise = next();
     else if (a == "--object")

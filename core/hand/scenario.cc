@@ -108,20 +108,54 @@ JointVector ReadPosture(const TomlFile& file, const char* key, const HandModel& 
 
 fs::path Beside(fs::path urdf_file) { return urdf_file.replace_extension(".toml"); }
 
+/// The URDF that a scenario names, or the one beside it.
+fs::path UrdfOf(const TomlFile& file, const fs::path& toml_file) {
+  if (!file.root().contains("urdf")) return fs::path(toml_file).replace_extension(".urdf");
+  const std::string named = file.Text(file.root(), "urdf");
+  file.ThrowIfAny();
+  const fs::path urdf = toml_file.parent_path() / named;  // an absolute one stays as it is
+  if (!IsFile(urdf))
+    throw ModelError(fmt::format("{}: urdf = \"{}\": file not found", toml_file.string(), named));
+  return urdf;
+}
+
 }  // namespace
+
+HandFiles FindHandFiles(const std::string& hand, const std::vector<fs::path>& search_path) {
+  fs::path toml_file = hand;
+  if (toml_file.extension() == ".toml") {
+    if (!IsFile(toml_file)) throw ModelError(fmt::format("{}: file not found", hand));
+    const fs::path urdf = UrdfOf(TomlFile(toml_file), toml_file);
+    if (!IsFile(urdf))
+      throw ModelError(fmt::format("{}: there is no {} beside it; urdf = \"FILE.urdf\" names one",
+                                   hand, urdf.filename().string()));
+    return {urdf, toml_file};
+  }
+  // A scenario of this name whose URDF stands elsewhere.
+  if (fs::path(hand).filename() == hand && !hand.empty())
+    for (const fs::path& directory : search_path) {
+      toml_file = directory / "hands" / (hand + ".toml");
+      if (!IsFile(fs::path(toml_file).replace_extension(".urdf")) && IsFile(toml_file))
+        return {UrdfOf(TomlFile(toml_file), toml_file), toml_file};
+      if (IsFile(toml_file)) break;
+    }
+  const fs::path urdf = FindModel(hand, "hands", search_path);
+  toml_file = Beside(urdf);
+  return {urdf, IsFile(toml_file) ? toml_file : fs::path()};
+}
 
 LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
                             const std::vector<fs::path>& search_path, const LoadOptions& options) {
-  const fs::path urdf_file = FindModel(hand, "hands", search_path);
-  const fs::path toml_file = Beside(urdf_file);
-  if (!IsFile(toml_file))
-    throw ModelError(fmt::format("{}: scenario not found; a hand needs one beside its URDF",
-                                 toml_file.string()));
+  const auto [urdf_file, toml_file] = FindHandFiles(hand, search_path);
+  if (toml_file.empty())
+    throw ModelError(fmt::format(
+        "{}: scenario not found; a hand needs one beside its URDF: regrasp hand new {} -o {}",
+        Beside(urdf_file).string(), urdf_file.string(), Beside(urdf_file).string()));
   const TomlFile file(toml_file);
   const toml::table& root = file.root();
   file.CheckKeys(root, {"object", "gravity_m_s2", "armature_kg_m2", "object_pose", "finger",
                         "q_preshape_deg", "q_closed_deg", "palm", "locked_deg", "coupled",
-                        "damping_nm_s_rad", "inertia_from_shape", "fill_missing_meshes"});
+                        "damping_nm_s_rad", "inertia_from_shape", "fill_missing_meshes", "urdf"});
   LoadedScenario loaded;
   Scenario& scenario = loaded.scenario;
   scenario.object = file.Text(root, "object");
@@ -141,7 +175,7 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   file.ThrowIfAny();
 
   loaded.hand = LoadHand(urdf_file, layout, of_hand, &loaded.report);
-  loaded.hand.name = urdf_file.stem().string();
+  loaded.hand.name = toml_file.stem().string();
   scenario.name = scenario.hand = loaded.hand.name;
   scenario.q_preshape = ReadPosture(file, "q_preshape_deg", loaded.hand);
   scenario.q_closed = ReadPosture(file, "q_closed_deg", loaded.hand);

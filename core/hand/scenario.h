@@ -27,6 +27,15 @@ struct Scenario {
   Vector3d gravity_W = Vector3d(0, 0, -9.81);  ///< [m/s²]
 };
 
+/// The files of a hand given by name, by its URDF or by its scenario: the scenario stands beside
+/// the URDF under the same name, or names the URDF itself (`urdf`, relative to the scenario's
+/// place). `scenario` is empty where there is none. Throws ModelError.
+struct HandFiles {
+  std::filesystem::path urdf, scenario;
+};
+HandFiles FindHandFiles(const std::string& hand,
+                        const std::vector<std::filesystem::path>& search_path);
+
 struct LoadedScenario {
   Scenario scenario;
   HandModel hand;
@@ -34,10 +43,10 @@ struct LoadedScenario {
   ModelReport report;  ///< what loading did beyond reading; not part of a run
 };
 
-/// Loads the scenario that belongs to a hand (`hand`: a name in the search path, or a .urdf file
-/// with a .toml of the same name beside it) with an object (a name, a .urdf file, or empty for the
-/// scenario's own). Throws ModelError; a name that is not found is answered with the names that
-/// are.
+/// Loads the scenario that belongs to a hand (`hand`: a name in the search path, a .urdf file with
+/// a .toml of the same name beside it, or a .toml file; HandFiles) with an object (a name, a .urdf
+/// file, or empty for the scenario's own). Throws ModelError; a name that is not found is answered
+/// with the names that are.
 LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
                             const std::vector<std::filesystem::path>& search_path,
                             const LoadOptions& options = {});

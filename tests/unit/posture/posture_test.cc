@@ -1,0 +1,196 @@
+/// Fingers, palms and grasps found for hands that nobody has prepared.
+
+#include <gtest/gtest.h>
+
+#include "core/posture/grasp_search.h"
+#include "core/posture/hand_guess.h"
+#include "core/posture/scenario_text.h"
+#include "core/posture/way_in.h"
+#include "tests/unit/hand/model_files.h"
+#include "tests/unit/posture/radial_hand.h"
+
+namespace regrasp {
+namespace {
+
+class PostureTest : public testing::Test {
+ protected:
+  PostureTest() {
+    std::string name = (fs::temp_directory_path() / "regrasp_posture_XXXXXX").string();
+    directory_ = mkdtemp(name.data());
+  }
+  ~PostureTest() override { fs::remove_all(directory_); }
+
+  fs::path Write(const std::string& name, const std::string& text) const {
+    const fs::path path = directory_ / name;
+    std::ofstream(path) << text;
+    return path;
+  }
+  static std::string WhyNot(const fs::path& file) {
+    try {
+      GuessHand(file);
+    } catch (const ModelError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path directory_;
+};
+
+TEST_F(PostureTest, FindsTheFingersOfHandsWithTwoToEightFingers) {
+  for (int n = 2; n <= kMaxFingers; ++n) {
+    SCOPED_TRACE(n);
+    const HandGuess guess = GuessHand(Write("hand.urdf", RadialHandUrdf(n)));
+    ASSERT_EQ(guess.layout.fingers.size(), static_cast<std::size_t>(n));
+    EXPECT_EQ(guess.layout.fingers[1].tip_link, "arm2c");
+    EXPECT_EQ(guess.layout.fingers[1].name, "finger2");
+    EXPECT_TRUE(guess.layout.locked.empty());
+    if (n * 3 > kMaxJoints) continue;
+    const HandModel hand = LoadHand(directory_ / "hand.urdf", guess.layout);
+    EXPECT_EQ(hand.num_joints(), 3 * n);
+    EXPECT_EQ(hand.fingers[1].joints.size(), 3u);
+  }
+  EXPECT_NE(WhyNot(Write("one.urdf", RadialHandUrdf(1))).find("a hand has 2 .. 8"),
+            std::string::npos);
+  EXPECT_NE(WhyNot(Write("nine.urdf", RadialHandUrdf(9))).find("9 chains"), std::string::npos);
+}
+
+TEST_F(PostureTest, TurnsThePalmUprightWhicheverWayTheFileHasIt) {
+  for (const Vector3d& turn :
+       {Vector3d(0, 0, 0), Vector3d(M_PI / 2, 0, 0), Vector3d(0, -1, 0.4), Vector3d(2, 1, -0.5)}) {
+    const Matrix3d R = FromRotationVector(turn).toRotationMatrix();
+    const HandGuess guess = GuessHand(Write("hand.urdf", RadialHandUrdf(4, R)));
+    const Isometry3d& X_HR = guess.layout.X_HR;
+    // Fingers stand along R z, and go to +z of the hand.
+    EXPECT_LT((X_HR.linear() * R.col(2) - Vector3d::UnitZ()).norm(), 1e-6);
+    EXPECT_NEAR(X_HR.linear().determinant(), 1, 1e-9);
+    const HandModel hand = LoadHand(directory_ / "hand.urdf", guess.layout);
+    KinematicsData data;
+    ForwardKinematics(hand, JointVector::Zero(hand.num_joints()), &data);
+    for (int f = 0; f < 4; ++f) EXPECT_GT(FingertipCentre(hand, data, f).z(), 0.08);
+  }
+}
+
+TEST_F(PostureTest, LocksAWristAndTellsIt) {
+  const HandGuess guess =
+      GuessHand(Write("hand.urdf", RadialHandUrdf(3, Matrix3d::Identity(), true)));
+  ASSERT_EQ(guess.layout.locked.count("W"), 1u);
+  EXPECT_NE(guess.notes.front().find("wrist: W"), std::string::npos);
+  EXPECT_EQ(LoadHand(directory_ / "hand.urdf", guess.layout).num_joints(), 9);
+}
+
+TEST_F(PostureTest, NamesFingersByWhatTheFileCallsThem) {
+  std::string text = RadialHandUrdf(5);
+  for (const auto& [from, to] :
+       {std::pair{"arm1", "Index_"}, std::pair{"arm2", "mf"}, std::pair{"arm3", "RING"},
+        std::pair{"arm4", "pinky"}, std::pair{"arm5", "hand_thumb_"}})
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at))
+      text.replace(at, 4, to);
+  const HandGuess guess = GuessHand(Write("hand.urdf", text));
+  std::vector<std::string> names;
+  for (const auto& finger : guess.layout.fingers) names.push_back(finger.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"first", "middle", "ring", "little", "thumb"}));
+}
+
+TEST_F(PostureTest, TakesAFingertipThatIsABoxForNone) {
+  std::string text = RadialHandUrdf(4);
+  const std::size_t at = text.find("<cylinder", text.find("arm2c"));
+  text.replace(at, text.find("/>", at) - at, "<box size=\"0.01 0.01 0.02\"");
+  const HandGuess guess = GuessHand(Write("hand.urdf", text));
+  EXPECT_EQ(guess.layout.fingers.size(), 3u);
+  EXPECT_NE(guess.notes.front().find("arm2c"), std::string::npos);
+}
+
+TEST_F(PostureTest, TouchesABallWithFingersOfAnyNumberOfJoints) {
+  std::string text = RadialHandUrdf(3);
+  // The far joints follow the near ones, and nothing turns sideways: one joint a finger.
+  for (const char* n : {"arm1", "arm2", "arm3"}) {
+    const std::string near = std::string(n) + "_near", far = std::string(n) + "_far";
+    const std::size_t at = text.find("</joint>", text.find("\"" + far + "\""));
+    text.insert(at, "<mimic joint=\"" + near + "\" multiplier=\"0.8\"/>");
+    text = Replaced(text, "\"" + std::string(n) + "_side\" type=\"revolute\"",
+                    "\"" + std::string(n) + "_side\" type=\"fixed\"");
+  }
+  const HandGuess guess = GuessHand(Write("hand.urdf", text));
+  const HandModel hand = LoadHand(directory_ / "hand.urdf", guess.layout);
+  ASSERT_EQ(hand.num_joints(), 3);
+  ASSERT_EQ(hand.num_coupled, 3);
+  const Vector3d centre(0, 0, 0.07);
+  JointVector q = JointVector::Zero(3);
+  ASSERT_TRUE(TouchBall(hand, 0.025, centre, &q));
+  KinematicsData data;
+  ForwardKinematics(hand, q, &data);
+  for (int f = 0; f < 3; ++f)
+    EXPECT_NEAR((FingertipCentre(hand, data, f) - centre).norm(), 0.033, 2e-5);
+  EXPECT_FALSE(TouchBall(hand, 0.025, Vector3d(0, 0, 0.5), &q)) << "out of reach";
+}
+
+TEST_F(PostureTest, FindsAGraspThatItsJudgementAndItsFileAgreeOn) {
+  const fs::path urdf = Write("radial.urdf", RadialHandUrdf(4));
+  HandGuess guess = GuessHand(urdf);
+  guess.layout.armature = 2e-4;
+  const HandModel hand = LoadHand(urdf, guess.layout);
+  GraspSearch search;
+  search.steps = 300;
+  search.starts = 2;
+  const std::vector<BallGrasp> grasps = FindGrasps(hand, search);
+  ASSERT_FALSE(grasps.empty());
+  const BallGrasp& grasp = grasps.front();
+  // Four fingers around a ball hold it without any one of them.
+  EXPECT_GT(grasp.load_margin, 0.5);
+  for (double margin : grasp.margin_without) EXPECT_GT(margin, 0.0);
+  EXPECT_GT(grasp.facing, 0.0);
+  BallGrasp again = grasp;
+  Judge(hand, search.task, -1e9, &again);
+  EXPECT_DOUBLE_EQ(again.score, grasp.score);
+  EXPECT_EQ(FindGrasps(hand, search).front().score, grasp.score) << "deterministic";
+
+  RandomStream random(1, 2);
+  const WayIn way = FindWayIn(hand, search.task, grasp, 2, &random);
+  EXPECT_EQ(way.stuck, -1);
+  KinematicsData data;
+  for (int f = 0; f < 4; ++f) {
+    const double reach = search.task.radius + hand.fingers[static_cast<std::size_t>(f)].tip_radius;
+    ForwardKinematics(hand, way.open, &data);
+    EXPECT_GT((FingertipCentre(hand, data, f) - grasp.p_WO).norm(), reach + 0.015);
+    ForwardKinematics(hand, way.closed, &data);
+    EXPECT_LT((FingertipCentre(hand, data, f) - grasp.p_WO).norm(), reach - 0.005);
+  }
+
+  // What is written is read back as the same scenario, from a place of its own.
+  ScenarioText text;
+  text.urdf = "radial.urdf";
+  text.layout = guess.layout;
+  text.scenario.object = "ball";
+  text.scenario.q_preshape = way.open;
+  text.scenario.q_closed = way.closed;
+  text.scenario.X_WO.translation() = grasp.p_WO;
+  const fs::path toml = Write("mine.toml", WriteScenario(text, hand));
+  fs::create_directories(directory_ / "objects");
+  std::ofstream(directory_ / "objects/ball.urdf") << kBallUrdf;
+  const LoadedScenario loaded = LoadScenario(toml.string(), "", {directory_});
+  EXPECT_EQ(loaded.hand.name, "mine");
+  EXPECT_LT((loaded.scenario.q_preshape - way.open).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((loaded.scenario.q_closed - way.closed).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((loaded.scenario.X_WO.translation() - grasp.p_WO).norm(), 1e-5);
+  for (std::size_t j = 0; j < hand.joints.size(); ++j)
+    EXPECT_LT((loaded.hand.joints[j].X_PJ.translation() - hand.joints[j].X_PJ.translation()).norm(),
+              2e-5);
+}
+
+TEST_F(PostureTest, AScenarioThatNamesNoUrdfOrAMissingOneIsRefused) {
+  const auto why = [&](const std::string& toml) {
+    try {
+      LoadScenario(Write("mine.toml", toml).string(), "", {directory_});
+    } catch (const ModelError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(why("urdf = \"gone.urdf\"\n").find("urdf = \"gone.urdf\": file not found"),
+            std::string::npos);
+  EXPECT_NE(why("object = \"ball\"\n").find("mine.urdf beside it"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace regrasp
