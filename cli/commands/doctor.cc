@@ -38,7 +38,7 @@ Check CheckProgram(const std::string& daemon) {
 /// The programs that replay, film and draw. Without arguments each says how it is used.
 Check CheckHelpers() {
   std::string found;
-  for (const char* name : {"regrasp-run", "regrasp-plot-experiment"}) {
+  for (const char* name : {"regrasp-run", "regrasp-hand", "regrasp-plot-experiment"}) {
     try {
       const std::string path = FindHelper(name);
       const Finished finished = RunProgram({path});
@@ -69,12 +69,36 @@ Check CheckConfiguration(const std::string& daemon) {
           model ? "regrasp up --models-dir DIR" : "regrasp config check", false};
 }
 
-Check CheckOutput(const std::string& daemon) {
+/// What a key of the configuration is; empty where that cannot be told.
+std::string Configured(const std::string& daemon, const char* name) {
   const Json config = Json::parse(RunProgram({daemon, "--print-config"}).out, nullptr, false);
-  std::string directory;
   if (config.is_object())
     for (const auto& key : config["keys"])
-      if (key["name"] == "output_dir") directory = Plain(key["value"]);
+      if (key["name"] == name) return Plain(key["value"]);
+  return "";
+}
+
+/// The step that the configured hand gets, tried on the hand itself.
+Check CheckStepper(const std::string& daemon) {
+  const std::string hand = Configured(daemon, "hand"), set = Configured(daemon, "stepper");
+  try {
+    const Finished finished =
+        RunProgram({FindHelper("regrasp-hand"), "check", hand.empty() ? "shadow" : hand, "--json"});
+    const Json told = Json::parse(finished.out, nullptr, false);
+    if (finished.code != 0 || !told.is_object())
+      return {"stepper", FirstLine(finished), "regrasp hand check " + hand, false};
+    const std::string best = Plain(told["stepper"]);
+    return {"stepper",
+            fmt::format("{} for {}: {}{}", best, Plain(told["hand"]), Plain(told["stepper_reason"]),
+                        set == "auto" || set == best ? "" : "; configured is " + set),
+            ""};
+  } catch (const CliError& error) {
+    return {"stepper", error.what(), error.hint, false};
+  }
+}
+
+Check CheckOutput(const std::string& daemon) {
+  const std::string directory = Configured(daemon, "output_dir");
   if (directory.empty()) return {"output", "the usual place", ""};
   fs::path place = directory;
   std::error_code ignored;
@@ -176,8 +200,8 @@ ExitCode Doctor(Context& context, const Invocation&) {
   std::vector<Check> checks;
   try {
     const std::string daemon = FindDaemon();
-    checks = {CheckProgram(daemon),       CheckHelpers(),      CheckFont(),
-              CheckConfiguration(daemon), CheckOutput(daemon), CheckPhysics()};
+    checks = {CheckProgram(daemon), CheckHelpers(),      CheckFont(),   CheckConfiguration(daemon),
+              CheckStepper(daemon), CheckOutput(daemon), CheckPhysics()};
   } catch (const CliError& error) {
     checks = {{"program", error.what(), "build it, or install the package", false}};
   }

@@ -60,8 +60,9 @@ std::vector<std::string> DaemonWords(const Invocation& invocation) {
     words.push_back(arg.flags);
     if (arg.kind == ArgKind::kFlag) continue;
     std::string value = invocation.Text(arg.key);
-    const bool path =
-        arg.key.ends_with("-dir") || arg.key == "config" || value.find('/') != std::string::npos;
+    const bool path = arg.key.ends_with("-dir") || arg.key == "config" ||
+                      value.find('/') != std::string::npos || value.ends_with(".urdf") ||
+                      value.ends_with(".toml");
     words.push_back(path ? std::filesystem::absolute(value).string() : value);
   }
   return words;
@@ -97,7 +98,8 @@ std::string Differences(const Json& wanted, const Invocation& invocation, const 
     if (!invocation.Has(flag)) continue;
     Json is = At(status, key), want = wanted.at(key).at("value");
     if (is.is_object()) is = At(is, "preset");
-    if (want.is_string() && want.get<std::string>().ends_with(".urdf"))
+    if (want.is_string() &&
+        (want.get<std::string>().ends_with(".urdf") || want.get<std::string>().ends_with(".toml")))
       want = std::filesystem::path(want.get<std::string>()).stem().string();
     if (is != want)
       text +=

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "cli/client/errors.h"
+#include "cli/commands/hand.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
@@ -117,7 +118,7 @@ const std::vector<CommandSpec>& Commands() {
   static const std::vector<CommandSpec> kCommands = [] {
     std::vector<CommandSpec> all;
     for (auto* group : {RunCommands, ControlCommands, InspectCommands, ResultCommands,
-                        ExperimentCommands, ToolCommands, ConfigCommands}) {
+                        ExperimentCommands, HandCommands, ToolCommands, ConfigCommands}) {
       for (auto& command : group()) all.push_back(std::move(command));
     }
     return all;

@@ -95,6 +95,11 @@ constexpr Example kExamples[] = {
     {"checkpoint restore", "regrasp checkpoint restore start", "go on from there"},
     {"checkpoint list", "regrasp checkpoint list", "the states there are"},
 
+    {"hand check", "regrasp hand check shadow", "a hand of the search path"},
+    {"hand check", "regrasp hand check my_hand.urdf -o my_hand.png", "a file, and its picture"},
+    {"hand new", "regrasp hand new my_hand.urdf -o my_hand.toml", "then: up --hand my_hand.toml"},
+    {"hand new", "regrasp hand new my_hand.urdf -o big.toml --object-size 60 --seed 2", "for a larger ball"},
+
     {"evaluate", "regrasp evaluate grasp.json", "measures of a grasp in a file"},
     {"call", "regrasp call status", "any method of the wire"},
     {"call", R"(regrasp call describe '{"method": "explore"}')", "with parameters"},

@@ -12,6 +12,7 @@ from harness import DaemonCase, HANG_S, REGRASP, SOURCE, Terminal, environment
 ELSEWHERE = {
     "completion": "prints a script: test_completion", "demo": "minutes: test_daemon", "down": "ends the daemon: test_daemon",
     "top": "needs a terminal: test_top", "shell": "needs a terminal: test_shell",
+    "hand check": "needs no daemon: test_hand", "hand new": "half a minute: test_hand",
     "replay": "needs a run file: test_record", "export": "needs a run file: test_record", "video": "needs a run file: test_record",
     "experiment exploration": "minutes: test_experiment", "experiment rotation": "minutes: test_experiment",
     "experiment zoo": "minutes: test_experiment", "experiment paper": "an hour: test_experiment", "experiment noise-sweep": "minutes: test_experiment", "experiment merge": "needs shards: test_experiment",

@@ -1,0 +1,83 @@
+// regrasp-hand: looks at a hand's files and makes scenarios. `regrasp hand` checks the arguments
+// and executes it.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "cli/hand/hand_command.h"
+#include "core/files/names.h"
+
+namespace regrasp::hand {
+
+double Options::Number(const std::string& flag, double otherwise, double min, double max) const {
+  if (!Has(flag)) return otherwise;
+  const std::string& text = values.at(flag);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(value >= min && value <= max))
+    throw Failure(
+        ExitCode::kUsage,
+        fmt::format("{} {}: expected a number from {:g} to {:g}", flag, Shown(text), min, max),
+        "regrasp help hand " + verb);
+  return value;
+}
+
+namespace {
+
+void TellFailure(const Options& options, const std::string& cause, const std::string& next) {
+  if (options.Has("--json"))
+    fmt::print(stderr, "{}\n", Json{{"error", {{"message", cause}, {"hint", next}}}}.dump());
+  else
+    fmt::print(stderr, "regrasp: {}\n  try: {}\n", cause, next);
+}
+
+int Main(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool flag = argument == "--json" || argument == "--quiet" || argument == "--force" ||
+                      argument == "--inertia-from-shape" || argument == "--fill-missing-meshes";
+    if (flag)
+      options.values[argument] = "";
+    else if (argument.starts_with("--") && i + 1 < argc)
+      options.values[argument] = argv[++i];
+    else
+      (options.verb.empty() ? options.verb : options.file) = argument;
+  }
+  try {
+    Answer answer;
+    if (options.verb == "check")
+      answer = CheckHand(options);
+    else if (options.verb == "new")
+      answer = NewHand(options);
+    else
+      throw Failure(ExitCode::kUsage, fmt::format("regrasp-hand: unknown verb '{}'", options.verb),
+                    "regrasp help hand check");
+    if (!options.Has("--quiet"))
+      fmt::print("{}\n", options.Has("--json") ? answer.json.dump() : answer.text);
+    if (std::fflush(stdout) != 0)
+      throw Failure(ExitCode::kIo, "cannot write to standard output", "regrasp doctor");
+    return static_cast<int>(answer.code);
+  } catch (const Failure& failure) {
+    TellFailure(options, failure.what(), failure.next);
+    return static_cast<int>(failure.code);
+  } catch (const ModelError& error) {
+    const std::string cause = error.what();
+    const bool missing = cause.ends_with("file not found");
+    TellFailure(
+        options, cause,
+        missing ? "give the path of a .urdf or .toml file" : "mend the file, then check again");
+    return static_cast<int>(missing ? ExitCode::kNotFound : ExitCode::kFailed);
+  } catch (const std::exception& error) {
+    TellFailure(options, error.what(), "regrasp help hand " + options.verb);
+    return static_cast<int>(ExitCode::kIo);
+  }
+}
+
+}  // namespace
+}  // namespace regrasp::hand
+
+int main(int argc, char** argv) { return regrasp::hand::Main(argc, argv); }

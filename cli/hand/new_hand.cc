@@ -1,0 +1,304 @@
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/hand/hand_command.h"
+#include "cli/hand/trial.h"
+#include "core/files/draft.h"
+#include "core/posture/grasp_search.h"
+#include "core/posture/hand_guess.h"
+#include "core/posture/scenario_text.h"
+#include "core/posture/way_in.h"
+#include "core/world/stepper_choice.h"
+
+namespace regrasp::hand {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small hands use
+constexpr double kOpposes = 0.05;   // [N]: a load margin that counts
+constexpr double kHold = 5;         // [s] of a trial
+
+/// Progress on a terminal's last line, or a line per tenth elsewhere.
+class Progress {
+ public:
+  explicit Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
+  void Show(const std::string& what, double done) {
+    const int percent = static_cast<int>(100 * done);
+    if (quiet_ || (percent == percent_ && what == what_)) return;
+    if (!terminal_ && what == what_ && percent < percent_ + 20) return;
+    percent_ = percent;
+    what_ = what;
+    fmt::print(stderr, "{}{} {:3d} %{}", terminal_ ? "\r" : "", what, percent,
+               terminal_ ? "   " : "\n");
+    std::fflush(stderr);
+  }
+  ~Progress() {
+    if (!quiet_ && terminal_ && percent_ >= 0) fmt::print(stderr, "\r{:60}\r", "");
+  }
+
+ private:
+  bool quiet_, terminal_;
+  int percent_ = -1;
+  std::string what_;
+};
+
+/// A ball of the search path's that is nearest in size.
+std::string BallFor(double size_mm) {
+  struct Ball {
+    const char* name;
+    double size_mm;
+  };
+  static constexpr Ball kBalls[] = {
+      {"sphere_40mm", 40}, {"sphere_45mm", 45}, {"sphere", 50}, {"sphere_60mm", 60}};
+  const Ball* best = kBalls;
+  for (const Ball& ball : kBalls)
+    if (std::abs(ball.size_mm - size_mm) < std::abs(best->size_mm - size_mm)) best = &ball;
+  return best->name;
+}
+
+struct Found {
+  BallGrasp grasp;
+  WayIn way;
+  LoadedScenario model;
+  HoldTrial trial;
+};
+
+class Maker {
+ public:
+  explicit Maker(const Options& options)
+      : options_(options),
+        out_(options.Text("--output")),
+        size_mm_(options.Number("--object-size", 50, 20, 150)),
+        tilt_(options.Number("--tilt", 65, 0, 180) * M_PI / 180),
+        progress_(options.Has("--quiet")) {
+    search_.seed = static_cast<std::uint64_t>(options.Number("--seed", 1, 0, 9e15));
+    search_.task.radius = 0.5e-3 * size_mm_;
+    gravity_W_ = 9.81 * Vector3d(0, std::cos(tilt_), std::sin(tilt_));
+    search_.task.weight = 0.08 * gravity_W_;
+    search_.progress = [this](double done, double) { progress_.Show("searching a grasp", done); };
+  }
+
+  Answer Make() {
+    CheckOutput();
+    Read();
+    const std::vector<BallGrasp> grasps = FindGrasps(hand_, search_);
+    if (grasps.empty())
+      throw Failure(ExitCode::kFailed,
+                    fmt::format("{}: no posture found in which every fingertip touches a ball of "
+                                "{:g} mm",
+                                options_.file, size_mm_),
+                    "regrasp hand new FILE -o NAME.toml --object-size MM, larger or smaller");
+    Choose(grasps);
+    Write();
+    return Tell();
+  }
+
+ private:
+  void CheckOutput() const {
+    if (out_.extension() != ".toml")
+      throw Failure(ExitCode::kUsage,
+                    fmt::format("-o {}: a scenario file must end in .toml", out_.string()),
+                    "regrasp help hand new");
+    std::error_code ignored;
+    if (fs::exists(out_, ignored))
+      throw Failure(ExitCode::kIo, fmt::format("{}: exists; nothing is overwritten", out_.string()),
+                    "another name for -o, or remove the file");
+    const fs::path directory = out_.parent_path().empty() ? "." : out_.parent_path();
+    if (!fs::is_directory(directory, ignored))
+      throw Failure(ExitCode::kIo, fmt::format("{}: no such directory", directory.string()),
+                    "mkdir -p " + directory.string());
+  }
+
+  void Read() {
+    if (fs::path(options_.file).extension() == ".toml")
+      throw Failure(
+          ExitCode::kUsage,
+          fmt::format("{} is a scenario; `hand new` makes one from a .urdf file", options_.file),
+          "regrasp hand check " + options_.file);
+    urdf_ = FindHandFiles(options_.file, ModelSearchPath()).urdf;
+    guess_ = GuessHand(urdf_);
+    guess_.layout.armature = kArmature;
+    hand_ = LoadHand(urdf_, guess_.layout, options_.load(), &report_);
+    hand_.name = out_.stem().string();
+  }
+
+  /// The best grasps get a way in and a trial; the first that holds is taken, else the best.
+  void Choose(const std::vector<BallGrasp>& grasps) {
+    RandomStream random(search_.seed, 2);
+    const std::size_t count = std::min<std::size_t>(grasps.size(), 4);
+    for (std::size_t k = 0; k < count; ++k) {
+      progress_.Show("finding a way in, trying it", static_cast<double>(k) / 4);
+      Found found;
+      found.grasp = grasps[k];
+      found.way = FindWayIn(hand_, search_.task, found.grasp, 6, &random);
+      if (found.way.stuck >= 0 && k + 1 < count) continue;
+      Scenario& scenario = found.model.scenario;
+      scenario.name = scenario.hand = hand_.name;
+      scenario.object = BallFor(size_mm_);
+      scenario.q_preshape = found.way.open;
+      scenario.q_closed = found.way.closed;
+      scenario.X_WO.translation() = found.grasp.p_WO;
+      scenario.gravity_W = gravity_W_;
+      found.model.hand = hand_;
+      found.model.object = LoadObject(scenario.object, ModelSearchPath());
+      const StepperChoice choice = ChooseStepper(found.model, {});
+      found.trial = TryToHold(found.model, choice.stepper, search_.seed, kHold);
+      const bool better =
+          k == 0 || best_.model.hand.links.empty() ||
+          (found.trial.held && (!best_.trial.held || found.trial.margin_n > best_.trial.margin_n));
+      if (better) {
+        best_ = found;
+        choice_ = choice;
+      }
+    }
+  }
+
+  /// The URDF as the scenario names it: nothing where it stands beside it under the same name.
+  std::string NamedUrdf() const {
+    std::error_code ignored;
+    const fs::path directory =
+        fs::absolute(out_.parent_path().empty() ? fs::path(".") : out_.parent_path(), ignored);
+    const fs::path relative =
+        fs::relative(fs::absolute(urdf_, ignored), directory.lexically_normal(), ignored);
+    if (relative == out_.stem().string() + ".urdf") return "";
+    return relative.empty() ? fs::absolute(urdf_, ignored).string() : relative.string();
+  }
+
+  void Write() {
+    ScenarioText text;
+    text.urdf = NamedUrdf();
+    text.layout = guess_.layout;
+    text.options = options_.load();
+    text.scenario = best_.model.scenario;
+    text.comments = {fmt::format("Made by: regrasp hand new {} -o {} --object-size {:g} --seed {} "
+                                 "--tilt {:g}",
+                                 urdf_.filename().string(), out_.filename().string(), size_mm_,
+                                 search_.seed, tilt_ * 180 / M_PI),
+                     ScoreLine()};
+    std::ofstream file(out_);
+    file << WriteScenario(text, hand_);
+    file.close();
+    if (!file)
+      throw Failure(ExitCode::kIo,
+                    fmt::format("{}: cannot write: {}", out_.string(), std::strerror(errno)),
+                    "another place for -o");
+  }
+
+  std::string ScoreLine() const {
+    const BallGrasp& g = best_.grasp;
+    std::string line = fmt::format("Load margin {:.2f} N; without", g.load_margin);
+    for (std::size_t f = 0; f < hand_.fingers.size(); ++f)
+      line += fmt::format("{} {} {:.2f}", f == 0 ? "" : ",", hand_.fingers[f].name,
+                          std::max(0.0, g.margin_without[f]));
+    return line + fmt::format(" N. Room to limits {:.2f}, clearance {:.1f} mm.", g.room,
+                              1e3 * std::min(g.clearance, best_.way.gap));
+  }
+
+  std::vector<std::string> Remarks() const {
+    std::vector<std::string> remarks;
+    const BallGrasp& g = best_.grasp;
+    if (g.load_margin < kOpposes)
+      remarks.push_back(
+          "no finger opposes the others: the fingertips cannot hold the ball against "
+          "every small push");
+    if (hand_.num_fingers() < 3)
+      remarks.push_back("two fingers: `grasp` needs three contacts");
+    else if (hand_.num_fingers() == 3)
+      remarks.push_back(
+          "three fingers: none can leave the grasp; the hand holds and moves the ball "
+          "but does not explore or regrasp");
+    else if (g.load_margin >= kOpposes &&
+             g.margin_without[static_cast<std::size_t>(g.opposing)] < kOpposes)
+      remarks.push_back(
+          fmt::format("without {} the others cannot hold the ball: it will not be allowed to leave",
+                      hand_.fingers[static_cast<std::size_t>(g.opposing)].name));
+    for (const Finger& finger : hand_.fingers)
+      if (finger.joints.size() < 3)
+        remarks.push_back(fmt::format("{} has {} driven joints: it holds, but cannot explore",
+                                      finger.name, finger.joints.size()));
+    if (best_.way.stuck >= 0)
+      remarks.push_back(fmt::format("{} finds no straight way to its contact within its limits",
+                                    hand_.fingers[static_cast<std::size_t>(best_.way.stuck)].name));
+    if (!best_.trial.held)
+      remarks.push_back(fmt::format("tried once, it did not hold: {}", best_.trial.end));
+    for (const ModelWarning& warning : report_.warnings) remarks.push_back(warning.Line());
+    return remarks;
+  }
+
+  Answer Tell() const {
+    const BallGrasp& g = best_.grasp;
+    const char* stepper = choice_.stepper == Stepper::kFast ? "fast" : "exact";
+    const std::vector<std::string> remarks = Remarks();
+    Answer answer;
+    Json fingers = Json::array();
+    std::string table = fmt::format("\n  {:<10} {:>14} {:>18}  {}", "finger", "rho without [N]",
+                                    "manipulability", "tip");
+    for (std::size_t f = 0; f < hand_.fingers.size(); ++f) {
+      const Finger& finger = hand_.fingers[f];
+      const std::string& tip = guess_.layout.fingers[f].tip_link;
+      fingers.push_back({{"name", finger.name},
+                         {"tip_link", tip},
+                         {"load_margin_without_n", std::max(0.0, g.margin_without[f])},
+                         {"manipulability", g.manipulability[f]},
+                         {"opposing", static_cast<int>(f) == g.opposing}});
+      table += fmt::format("\n  {:<10} {:>14.2f} {:>18.2e}  {}{}", finger.name,
+                           std::max(0.0, g.margin_without[f]), g.manipulability[f], tip,
+                           static_cast<int>(f) == g.opposing ? "    opposing" : "");
+    }
+    answer.json = {{"file", out_.string()},
+                   {"urdf", urdf_.string()},
+                   {"object", best_.model.scenario.object},
+                   {"seed", search_.seed},
+                   {"score", g.score},
+                   {"load_margin_n", g.load_margin},
+                   {"fingers", fingers},
+                   {"room_to_limits", g.room},
+                   {"clearance_m", std::min(g.clearance, best_.way.gap)},
+                   {"held", best_.trial.held},
+                   {"hold_end", best_.trial.end},
+                   {"moved_m", best_.trial.moved_m},
+                   {"stepper", stepper},
+                   {"stepper_reason", choice_.reason},
+                   {"remarks", remarks},
+                   {"notes", guess_.notes}};
+    answer.text = fmt::format(
+        "{}: load margin {:.2f} N, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
+        "stepper {}: {}",
+        out_.string(), g.load_margin, g.room, 1e3 * std::min(g.clearance, best_.way.gap), table,
+        best_.trial.held
+            ? fmt::format("tried: holds {} for {:g} s, moved {:.2f} mm",
+                          best_.model.scenario.object, kHold, 1e3 * best_.trial.moved_m)
+            : "tried: does not hold",
+        stepper, choice_.reason);
+    for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
+    answer.text += fmt::format("\n  next: regrasp up --hand {}", out_.string());
+    return answer;
+  }
+
+  const Options& options_;
+  fs::path out_, urdf_;
+  double size_mm_, tilt_;
+  Vector3d gravity_W_;
+  Progress progress_;
+  GraspSearch search_;
+  HandGuess guess_;
+  HandModel hand_;
+  ModelReport report_;
+  Found best_;
+  StepperChoice choice_;
+};
+
+}  // namespace
+
+Answer NewHand(const Options& options) { return Maker(options).Make(); }
+
+}  // namespace regrasp::hand

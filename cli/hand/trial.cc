@@ -1,0 +1,48 @@
+#include "cli/hand/trial.h"
+
+#include <algorithm>
+
+#include "core/session/session.h"
+
+namespace regrasp::hand {
+
+HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t seed,
+                    double seconds) {
+  constexpr double kLongest = 20;  // [s] for the grasp
+  SessionConfig config;
+  config.model = model;
+  config.parameters = DefaultParameters(model);
+  config.noise = NoisePreset("paper").value();
+  config.seed = seed;
+  config.world.stepper = stepper;
+  Session session(config);
+  Command grasp;
+  grasp.type = CommandType::kGrasp;
+  grasp.job = 1;
+  session.Apply(grasp);
+  HoldTrial trial;
+  const auto ticks = [&](double s) { return static_cast<std::int64_t>(s / config.world.dt); };
+  while (session.job_running() && session.tick() < ticks(kLongest)) session.Tick();
+  for (const JobRecord& job : session.TakeFinishedJobs()) trial.end = job.error;
+  if (session.state() != SessionState::kHolding) {
+    if (session.state() == SessionState::kFaulted) trial.end = session.world().fault_message();
+    if (trial.end.empty()) trial.end = "it dropped the object";
+    return trial;
+  }
+  const Vector3d p = session.truth().p_WO;
+  for (const std::int64_t end = session.tick() + ticks(seconds);
+       session.tick() < end && session.state() == SessionState::kHolding;)
+    session.Tick();
+  trial.held = session.state() == SessionState::kHolding;
+  trial.end = trial.held ? "" : "it dropped the object";
+  trial.moved_m = (session.truth().p_WO - p).norm();
+  Frame frame;
+  session.Snapshot(&frame, false);
+  trial.margin_n = 1e9;
+  for (int f = 0; f < model.hand.num_fingers(); ++f)
+    trial.margin_n =
+        std::min(trial.margin_n, frame.fingers[static_cast<std::size_t>(f)].load_margin_without);
+  return trial;
+}
+
+}  // namespace regrasp::hand

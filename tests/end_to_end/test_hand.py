@@ -1,0 +1,114 @@
+"""`regrasp hand`: hands that nobody has prepared, from a URDF to an object that is held, without a daemon until then."""
+
+import json
+import math
+import unittest
+
+from harness import Case
+
+INERTIAL = '<inertial><origin xyz="0 0 {0}"/><mass value="{1}"/><inertia ixx="{2}" ixy="0" ixz="0" iyy="{2}" iyz="0" izz="{2}"/></inertial>'
+JOINT = """<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0 0 {yaw}"/>
+<axis xyz="{axis}"/><limit lower="{lower}" upper="{upper}" effort="{effort}" velocity="5"/>{more}</joint>
+"""
+
+
+def hand(fingers, effort=1, more='<dynamics damping="0.05"/>'):
+    """Equal fingers of three joints on a circle, bending towards its axis. Made up for this test."""
+    text = '<robot name="made_up"><link name="palm"/>\n'
+    for f in range(fingers):
+        a = 2 * math.pi * f / fingers
+        n = f"arm{f + 1}"
+        text += f'<link name="{n}a">{INERTIAL.format(0, 0.01, 1e-6)}</link>\n'
+        for part, length in (("b", 0.05), ("c", 0.04)):
+            text += f"""<link name="{n}{part}">{INERTIAL.format(length / 2, 0.02, 5e-6)}<collision><origin xyz="0 0 {0.6 * length}"/>
+<geometry><cylinder radius="0.008" length="{0.6 * length}"/></geometry></collision></link>
+"""
+        text += JOINT.format(name=n + "_side", parent="palm", child=n + "a", xyz=f"{0.045 * math.cos(a):.6f} {0.045 * math.sin(a):.6f} 0",
+                             yaw=f"{a:.6f}", axis="1 0 0", lower=-0.6, upper=0.6, effort=effort, more=more)
+        text += JOINT.format(name=n + "_near", parent=n + "a", child=n + "b", xyz="0 0 0.01", yaw=0, axis="0 -1 0", lower=-0.3, upper=1.5,
+                             effort=effort, more=more)
+        text += JOINT.format(name=n + "_far", parent=n + "b", child=n + "c", xyz="0 0 0.05", yaw=0, axis="0 -1 0", lower=-0.2, upper=1.7,
+                             effort=effort, more=more)
+    return text + "</robot>\n"
+
+
+class Hand(Case):
+    def write(self, name, text):
+        path = self.dir / name
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    def check(self, *words):
+        done = self.regrasp("--json", "hand", "check", *words)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return json.loads(done.stdout)
+
+    def refused(self, code, *words):
+        done = self.regrasp(*words)
+        self.assertEqual((done.returncode, done.stdout), (code, ""), done.stdout + done.stderr)
+        self.assertIn("\n  try: ", done.stderr)
+        return done.stderr
+
+    def test_a_urdf_becomes_a_hand_that_holds(self):
+        self.write("four.urdf", hand(4))
+        made = self.regrasp("--json", "hand", "new", self.dir / "four.urdf", "-o", self.dir / "mine.toml", "--seed", "3")
+        self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
+        sheet = json.loads(made.stdout)
+        self.assertEqual(len(sheet["fingers"]), 4)
+        self.assertGreater(sheet["load_margin_n"], 0.2)
+        self.assertTrue(all(finger["manipulability"] > 0 for finger in sheet["fingers"]))
+        self.assertTrue(sheet["held"], sheet)
+        self.assertIn("searching a grasp", made.stderr)
+        before = (self.dir / "mine.toml").read_text(encoding="utf-8")
+        # The same seed finds the same; nothing is overwritten.
+        again = self.regrasp("-q", "hand", "new", self.dir / "four.urdf", "-o", self.dir / "again.toml", "--seed", "3")
+        self.assertEqual((again.returncode, again.stdout, again.stderr), (0, "", ""))
+        self.assertEqual((self.dir / "again.toml").read_text(encoding="utf-8").replace("again", "mine"), before)
+        self.assertIn("nothing is overwritten", self.refused(74, "hand", "new", self.dir / "four.urdf", "-o", self.dir / "mine.toml"))
+        self.assertEqual((self.dir / "mine.toml").read_text(encoding="utf-8"), before)
+        # And a daemon holds with it.
+        self.addCleanup(self.regrasp, "down")
+        self.expect(0, "up", "--hand", self.dir / "mine.toml", "--speed", "max", "--paused")
+        self.expect(0, "grasp")
+        self.expect(0, "step", 9000, "--wait")
+        status = json.loads(self.expect(0, "--json", "status"))
+        self.assertEqual((status["state"], status["hand"]), ("holding", "mine"))
+        self.assertIn(status["stepper"], ("fast", "exact"))
+
+    def test_check_tells_what_a_file_says(self):
+        told = self.check(self.write("three.urdf", hand(3, more="")), "-o", self.dir / "three.png")
+        self.assertEqual([finger["joints"] for finger in told["fingers"]][1], ["arm2_side", "arm2_near", "arm2_far"])
+        self.assertEqual(told["fingers"][0]["tip_radius_m"], 0.008)
+        self.assertEqual(len(told["joints"]), 9)
+        self.assertIsNone(told["scenario"])
+        self.assertIn(told["stepper"], ("fast", "exact"))
+        self.assertTrue(told["stepper_reason"])
+        warnings = "\n".join(told["warnings"])
+        self.assertIn("<dynamics damping> is missing for 9 joints", warnings)
+        self.assertIn("three fingers: none can leave", warnings)
+        self.assertEqual((self.dir / "three.png").read_bytes()[:4], b"\x89PNG")
+        # The hand that ships has nothing to warn of.
+        self.assertEqual(self.check("shadow")["warnings"], [])
+
+    def test_everything_that_is_wrong_is_told_at_once(self):
+        text = hand(3, effort=0).replace('radius="0.008"', 'radius="0,008"', 1)
+        error = self.refused(1, "hand", "check", self.write("bad.urdf", text))
+        self.assertIn("0,008", error)
+        error = self.refused(1, "hand", "check", self.write("weak.urdf", hand(3, effort=0)))
+        self.assertEqual(error.count("effort [N m] = 0; must be > 0"), 9)
+        error = self.refused(1, "hand", "new", self.dir / "weak.urdf", "-o", self.dir / "weak.toml")
+        self.assertEqual(error.count("effort [N m] = 0; must be > 0"), 9)
+        self.assertFalse((self.dir / "weak.toml").exists())
+
+    def test_usage(self):
+        four = self.write("four.urdf", hand(4))
+        self.assertIn("file not found", self.refused(6, "hand", "check", self.dir / "gone.urdf"))
+        self.assertIn("must end in .toml", self.refused(2, "hand", "new", four, "-o", self.dir / "x.txt"))
+        self.assertIn("no such directory", self.refused(74, "hand", "new", four, "-o", self.dir / "no" / "x.toml"))
+        self.assertIn("20 to 150", self.refused(2, "hand", "new", four, "-o", self.dir / "x.toml", "--object-size", "500"))
+        self.refused(2, "hand", "new", four)
+        self.assertIn("a hand has 2 .. 8", self.refused(1, "hand", "check", self.write("one.urdf", hand(1))))
+
+
+if __name__ == "__main__":
+    unittest.main()
