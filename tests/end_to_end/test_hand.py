@@ -71,7 +71,7 @@ class Hand(Case):
         self.expect(0, "up", "--hand", self.dir / "mine.toml", "--speed", "max", "--paused")
         self.expect(0, "grasp")
         self.expect(0, "step", 9000, "--wait")
-        status = json.loads(self.expect(0, "--json", "status"))
+        status = self.json("status")
         self.assertEqual((status["state"], status["hand"]), ("holding", "mine"))
         self.assertIn(status["stepper"], ("fast", "exact"))
 
