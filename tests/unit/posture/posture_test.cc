@@ -192,5 +192,26 @@ TEST_F(PostureTest, AScenarioThatNamesNoUrdfOrAMissingOneIsRefused) {
   EXPECT_NE(why("object = \"ball\"\n").find("mine.urdf beside it"), std::string::npos);
 }
 
+TEST(ShippedHands, HaveAGraspThatEveryFingerMayLeave) {
+  for (const char* name : {"allegro", "leap"}) {
+    SCOPED_TRACE(name);
+    const LoadedScenario model = LoadScenario(name, "", ModelSearchPath());
+    EXPECT_TRUE(model.report.warnings.empty());
+    EXPECT_EQ(model.hand.num_joints(), 16);
+    EXPECT_GE(model.hand.FindFinger("thumb"), 0);
+    // The way from the preshape to the closed posture leads through a grasp of the ball.
+    BallGrasp grasp;
+    grasp.q = 0.5 * (model.scenario.q_preshape + model.scenario.q_closed);
+    grasp.p_WO = model.scenario.X_WO.translation();
+    BallTask task;
+    task.weight = 0.08 * model.scenario.gravity_W;
+    ASSERT_TRUE(TouchBall(model.hand, task.radius, grasp.p_WO, &grasp.q));
+    Judge(model.hand, task, -1e9, &grasp);
+    for (double margin : grasp.margin_without) EXPECT_GT(margin, 0.5);
+    EXPECT_GT(grasp.room, 0.1);
+    EXPECT_GT(grasp.clearance, 0.002);
+  }
+}
+
 }  // namespace
 }  // namespace regrasp
