@@ -7,11 +7,12 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
-#include <fstream>
+#include <filesystem>
 #include <map>
+#include <stdexcept>
 
 #include "cli/client/context.h"
+#include "core/files/draft.h"
 
 namespace regrasp::cli {
 namespace {
@@ -113,17 +114,6 @@ ExitCode Reset(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
-/// Writes the whole file or nothing of it.
-void WriteWhole(const std::string& file, const std::string& text) {
-  const std::string draft = fmt::format("{}.{}.part", file, ::getpid());
-  std::ofstream stream(draft);
-  stream << text;
-  stream.close();
-  if (stream && std::rename(draft.c_str(), file.c_str()) == 0) return;
-  std::remove(draft.c_str());
-  throw CliError(kIo, fmt::format("cannot write {}", file), "regrasp param save OTHER_FILE");
-}
-
 ExitCode Save(Context& context, const Invocation& invocation) {
   const bool all = invocation.Has("all");
   const Json answer = context.client().Call("param.list", {{"changed", !all}});
@@ -139,7 +129,14 @@ ExitCode Save(Context& context, const Invocation& invocation) {
     context.out().Add(text);
     return kOk;
   }
-  WriteWhole(file, text);
+  try {
+    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
+    if (!directory.empty() && !std::filesystem::is_directory(directory))
+      throw std::runtime_error(fmt::format("{} is no directory", directory.string()));
+    WriteWhole(file, text, Draft::Existing::kReplace);
+  } catch (const std::runtime_error& error) {
+    throw CliError(kIo, error.what(), "regrasp param save OTHER_FILE");
+  }
   const std::size_t count = At(answer, "parameters").size();
   context.Print({{"file", file}, {"count", count}}, [&] {
     context.out().Line(fmt::format("{}: {} parameter{}{}", file, count, count == 1 ? "" : "s",

@@ -9,9 +9,11 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 #include "cli/client/errors.h"
 #include "cli/print/print.h"
+#include "core/files/draft.h"
 
 namespace regrasp::cli {
 namespace {
@@ -22,10 +24,11 @@ constexpr const char* kPlanFile = "experiment.json";
 constexpr const char* kOther = "the same command with -o OTHER_DIR";
 constexpr const char* kTrialsFile = "trials.jsonl";
 
+std::string Look(const fs::path& path) { return "ls -ld " + path.parent_path().string(); }
+
 CliError IoError(const std::string& what, const fs::path& path) {
   return {errno == EACCES ? kPermission : kIo,
-          fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)),
-          "ls -ld " + path.parent_path().string()};
+          fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)), Look(path)};
 }
 
 void WriteAll(int fd, const std::string& text, const fs::path& path) {
@@ -80,16 +83,12 @@ Trials ReadTrials(const fs::path& directory, const Plan& plan) {
 }
 
 void WriteFile(const fs::path& path, const std::string& text) {
-  const fs::path next = path.string() + ".new";
-  const int fd = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd < 0) throw IoError("write", next);
+  errno = 0;
   try {
-    WriteAll(fd, text, next);
-  } catch (...) {
-    ::close(fd);
-    throw;
+    WriteWhole(path, text, Draft::Existing::kReplace);
+  } catch (const std::runtime_error& error) {
+    throw CliError(errno == EACCES ? kPermission : kIo, error.what(), Look(path));
   }
-  if (::close(fd) != 0 || ::rename(next.c_str(), path.c_str()) != 0) throw IoError("write", path);
 }
 
 Store::Store(fs::path directory, const Plan& plan)
