@@ -97,7 +97,7 @@ class StateEstimator {
 };
 
 /// The contacts of these fingers, positions relative to the estimated object centre, friction
-/// coefficient `mu`. Fingers that have not touched for 20 ticks are left out.
+/// coefficient `mu`. Fingers that have lost contact (control.contact_lost_s) are left out.
 Grasp GraspOf(const Estimate& estimate, FingerSet fingers, double mu);
 
 }  // namespace regrasp

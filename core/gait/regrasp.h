@@ -48,7 +48,8 @@ class Regrasp {
       v("rub_s", rub_s);
     }
   };
-  /// Where the finger shall go, in W; follows the object's reference position.
+  /// Where the finger shall go, in W; follows the object: its reference position, or where the
+  /// landing is planned its estimated pose, noise and all.
   struct Target {
     Vector3d p_WC = Vector3d::Zero();       ///< contact [m]
     Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
