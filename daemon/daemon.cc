@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/hand/scenario.h"
@@ -52,7 +53,11 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   session.world.stepper = StepperFor(config.stepper, session);
   session.parameters.gravity_W = session.model.scenario.gravity_W;
   session.parameters = ParametersAfterReset(session.parameters, &session.model.object);
-  for (const auto& [name, value] : config.parameters) {
+  auto parameters = config.parameters;
+  std::ranges::stable_partition(parameters, IsPreset, [](const auto& parameter) -> decltype(auto) {
+    return ParameterTable()[static_cast<std::size_t>(FindParameter(parameter.first))];
+  });
+  for (const auto& [name, value] : parameters) {
     Command command;
     command.parameter = FindParameter(name);
     command.value = value;

@@ -164,7 +164,7 @@ Verdict Session::Impl::Apply(const Command& command) {
       break;
     case CommandType::kParameter: {
       Parameters next = parameters;
-      ParameterTable()[command.parameter].set(&next, command.value);
+      SetByUser(ParameterTable()[command.parameter], command.value, &next);
       const Verdict fit =
           job_running() ? CheckMeasure(next, job.method, job.explore.criterion) : Verdict();
       if (fit.kind != Verdict::Kind::kAllowed) return Refuse(command, fit);

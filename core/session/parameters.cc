@@ -282,6 +282,19 @@ const auto& Sorted() {
   return sorted;
 }
 
+/// What gait.preset sets besides itself for the paper's gait; for the planned one the defaults.
+struct PaperValue {
+  std::string_view name;
+  double value;
+};
+constexpr auto kPaperGait = std::to_array<PaperValue>({
+    {"gait.mode", static_cast<double>(GaitMode::kExploring)},
+    {"gait.plan", 0},
+    {"gait.forgive", 0},
+    {"gait.margin_min", 0.10},
+    {"gait.max_excursion", 0.016},
+});
+
 }  // namespace
 
 std::string_view Name(ParameterType type) {
@@ -298,16 +311,23 @@ int FindParameter(std::string_view name) {
   return -1;
 }
 
+bool IsPreset(const ParameterInfo& info) { return info.name == "gait.preset"; }
+
+bool IsSetByPreset(const ParameterInfo& info) {
+  return std::any_of(kPaperGait.begin(), kPaperGait.end(),
+                     [&](const PaperValue& row) { return row.name == info.name; });
+}
+
 void SetByUser(const ParameterInfo& info, const Vector3d& value, Parameters* parameters) {
   info.set(parameters, value);
-  if (info.name != "gait.preset") return;
-  GaitParameters& gait = parameters->gait;
-  const GaitParameters planned;
-  const bool paper = gait.preset == GaitPreset::kPaper;
-  gait.mode = paper ? GaitMode::kExploring : planned.mode;
-  gait.plan = gait.forgive = !paper;
-  gait.margin_min = paper ? 0.10 : planned.margin_min;
-  gait.max_excursion = paper ? 0.016 : planned.max_excursion;
+  if (!IsPreset(info)) return;
+  const bool paper = parameters->gait.preset == GaitPreset::kPaper;
+  const Parameters planned;
+  for (const PaperValue& row : kPaperGait) {
+    const ParameterInfo& other =
+        ParameterTable()[static_cast<std::size_t>(FindParameter(row.name))];
+    other.set(parameters, paper ? Vector3d(row.value, 0, 0) : other.get(planned));
+  }
 }
 
 Parameters DefaultParameters(const LoadedScenario& model) {

@@ -72,6 +72,11 @@ struct LoadedScenario;
 /// scenario.
 Parameters DefaultParameters(const LoadedScenario& model);
 
+/// Whether setting it sets others, too. In a batch it goes first, so that those keep the values
+/// that the batch gives them.
+bool IsPreset(const ParameterInfo& info);
+bool IsSetByPreset(const ParameterInfo& info);
+
 /// Sets one parameter as a user does: gait.preset sets those it stands for, too. The value must be
 /// allowed.
 void SetByUser(const ParameterInfo& info, const Vector3d& value, Parameters* parameters);

@@ -17,8 +17,12 @@ const Vector3d* Find(const DaemonConfig& config, const std::string& parameter) {
   return found;
 }
 
+const ParameterInfo& InfoOf(const std::string& name) {
+  return ParameterTable()[static_cast<std::size_t>(FindParameter(name))];
+}
+
 ReloadCall SetParameterCall(const std::string& name, const Vector3d& value) {
-  const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(FindParameter(name))];
+  const ParameterInfo& info = InfoOf(name);
   const JsonIn json = ParameterValueJson(info, value);
   return {
       "param.set", {{"name", name}, {"value", json}}, fmt::format("{} = {}", name, json.dump())};
@@ -42,10 +46,19 @@ ReloadPlan PlanReload(const DaemonConfig& running, const DaemonConfig& wanted) {
     else
       plan.at_once.push_back(change);
   }
-  for (const auto& [name, value] : wanted.parameters) {
+  auto parameters = wanted.parameters;
+  std::ranges::stable_partition(parameters, IsPreset, [](const auto& parameter) -> decltype(auto) {
+    return InfoOf(parameter.first);
+  });
+  bool preset_changes = false;
+  for (const auto& [name, value] : parameters) {
     const Vector3d* before = Find(running, name);
-    if (*Find(wanted, name) == value && !(before && *before == value))
+    const bool changes = !(before && *before == value);
+    if (*Find(wanted, name) != value) continue;
+    // What a preset overwrites is set again.
+    if (changes || (preset_changes && IsSetByPreset(InfoOf(name))))
       plan.calls.push_back(SetParameterCall(name, value));
+    preset_changes = preset_changes || (changes && IsPreset(InfoOf(name)));
   }
   for (const auto& [name, value] : running.parameters)
     if (!Find(wanted, name)) plan.restart.push_back(fmt::format("{}: no longer set", name));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/session/parameter_value.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
@@ -72,6 +74,18 @@ Command ReadMember(const Service& service, const std::string& name, const JsonIn
   return SetCommand(info, *given, name);
 }
 
+/// What is to be done for all to have the values that the commands give them.
+std::vector<Command> Changes(const Service& service, std::vector<Command> commands) {
+  std::ranges::stable_partition(commands, IsPreset, Row);
+  Parameters reached = service.accepted.parameters;
+  std::erase_if(commands, [&](const Command& command) {
+    if (Row(command).get(reached) == command.value) return true;
+    SetParameter(&reached, command);
+    return false;
+  });
+  return commands;
+}
+
 bool Selected(const ParameterInfo& info, const std::string& wanted) {
   return wanted.empty() || info.name == wanted || info.group() == wanted;
 }
@@ -111,28 +125,27 @@ Outcome ParamLoad(Service& service, const Params& params, Client&) {
   std::vector<Command> commands;
   for (const auto& [name, value] : params.Object("parameters").items())
     commands.push_back(ReadMember(service, name, value));
-  Json kept = service.ChangedParameters();
-  for (const Command& command : commands) kept.erase(std::string(Row(command).name));
-  std::vector<Command> changes;
-  for (const Command& command : commands)
-    if (Row(command).get(service.accepted.parameters) != command.value) changes.push_back(command);
-  const std::uint64_t barrier = service.SetParameters(changes);
+  const Json changed = service.ChangedParameters();
+  const std::uint64_t barrier = service.SetParameters(Changes(service, commands));
   Json list = Json::array();
   for (const Command& command : commands) list.push_back(Entry(service, Row(command)));
+  // Neither named nor overwritten by a preset.
+  Json kept = Json::object();
+  const Json now = service.ChangedParameters();
+  for (const auto& [name, value] : now.items())
+    if (changed.contains(name) && changed[name] == value) kept[name] = value;
+  for (const Command& command : commands) kept.erase(std::string(Row(command).name));
   return {.result = {{"parameters", std::move(list)}, {"kept", std::move(kept)}},
           .barrier = barrier};
 }
 
 Outcome ParamReset(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kParameter);
-  const Parameters defaults = service.DefaultValues();
+  const Parameters defaults = service.DefaultValues(), before = service.accepted.parameters;
   std::vector<Command> commands;
-  std::vector<Json> before;
   for (std::size_t i = 0; i < ParameterTable().size(); ++i) {
     const ParameterInfo& info = ParameterTable()[i];
-    const Vector3d value = info.get(service.accepted.parameters);
-    if (!Selected(info, params.String("name")) || value == info.get(defaults)) continue;
-    before.push_back(ParameterValueJson(info, value));
+    if (!Selected(info, params.String("name")) || info.get(before) == info.get(defaults)) continue;
     Command& command = commands.emplace_back();
     command.type = CommandType::kParameter;
     command.parameter = static_cast<int>(i);
@@ -140,10 +153,10 @@ Outcome ParamReset(Service& service, const Params& params, Client&) {
   }
   const std::uint64_t barrier = service.SetParameters(commands);
   Json list = Json::array();
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    Json entry = Entry(service, Row(commands[i]));
-    entry["before"] = std::move(before[i]);
-    list.push_back(std::move(entry));
+  for (const ParameterInfo& info : ParameterTable()) {  // a preset changes others, too
+    if (info.get(before) == info.get(service.accepted.parameters)) continue;
+    Json& entry = list.emplace_back(Entry(service, info));
+    entry["before"] = ParameterValueJson(info, info.get(before));
   }
   return {.result = {{"parameters", std::move(list)}}, .barrier = barrier};
 }

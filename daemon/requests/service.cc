@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/output/output_file.h"
@@ -17,6 +19,10 @@ constexpr std::size_t kMaxBacklog =
 constexpr std::size_t kEventsKept = 1000;  // for `events`
 constexpr std::size_t kReserve = 1000;     // commands that end something are taken for longer
 constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
+
+const ParameterInfo& RowOf(const Command& command) {
+  return ParameterTable()[static_cast<std::size_t>(command.parameter)];
+}
 
 /// What stands between the braces of an object.
 std::string Members(const Json& object) {
@@ -144,6 +150,8 @@ void Service::TakeIn(const JournalNews& news) {
       journal_ = news.start->journal;
       run_ = news.run;
       if (recorder) recorder->Begin(journal_, run_);
+      config_.control.session.world = journal_.config.world;  // a checkpoint brings its own
+      config_.control.session.model.scenario = journal_.config.model.scenario;
       if (!news.start->restored) break;
       accepted.parameters = news.start->parameters;
       accepted.noise = news.start->noise;
@@ -311,23 +319,54 @@ Json Service::ChangedParameters() const {
 std::string Service::SourceOfValue(const ParameterInfo& info) const {
   if (info.get(accepted.parameters) == info.get(DefaultValues())) return std::string(info.source);
   const auto origin = config_.parameter_origins.find(std::string(info.name));
-  return origin != config_.parameter_origins.end() ? "configuration, " + origin->second
-                                                   : "set while running";
+  if (origin != config_.parameter_origins.end()) return "configuration, " + origin->second;
+  return IsSetByPreset(info) && info.get(accepted.parameters) == info.get(PresetValues())
+             ? "gait.preset"
+             : "set while running";
 }
 
-std::uint64_t Service::SetParameters(const std::vector<Command>& commands) {
-  Parameters next = accepted.parameters;
-  for (const Command& command : commands) SetParameter(&next, command);
-  if (const JobRecord* job = jobs_.Unfinished())
-    CheckMeasure(next, job->method, job->explore.criterion);
-  CheckRoom(commands.size());
+Parameters Service::PresetValues() const {
+  Parameters values = DefaultValues();
+  for (const ParameterInfo& info : ParameterTable())
+    if (IsPreset(info)) SetByUser(info, info.get(accepted.parameters), &values);
+  return values;
+}
+
+void Service::OrderForJob(const JobRecord& job, std::vector<Command>* commands) const {
+  Parameters reached = accepted.parameters;
+  for (auto next = commands->begin(); next != commands->end(); ++next) {
+    const auto verdict = [&](const Command& command) {
+      Parameters then = reached;
+      SetParameter(&then, command);
+      return regrasp::CheckMeasure(then, job.method, job.explore.criterion);
+    };
+    const auto fits = std::find_if(next, commands->end(), [&](const Command& command) {
+      const bool lost = IsPreset(RowOf(*next)) && IsSetByPreset(RowOf(command));
+      return !lost && verdict(command).kind == Verdict::Kind::kAllowed;
+    });
+    if (fits == commands->end()) {
+      const Verdict refusal = verdict(*next);
+      throw RpcException(ErrorCode::kBadState, refusal.reason, refusal.hint);
+    }
+    std::rotate(next, fits, fits + 1);
+    SetParameter(&reached, *next);
+  }
+}
+
+std::uint64_t Service::SetParameters(std::vector<Command> commands) {
+  std::ranges::stable_partition(commands, IsPreset, RowOf);
+  if (const JobRecord* job = jobs_.Unfinished()) OrderForJob(*job, &commands);
+  CheckMayPost(commands.size(), 0);
+  const Parameters before = accepted.parameters;
   std::uint64_t barrier = 0;
   for (const Command& command : commands) {
     barrier = PostCommand(command);
     SetParameter(&accepted.parameters, command);
-    config_.parameter_origins.erase(
-        std::string(ParameterTable()[static_cast<std::size_t>(command.parameter)].name));
+    config_.parameter_origins.erase(std::string(RowOf(command).name));
   }
+  for (const ParameterInfo& info : ParameterTable())
+    if (info.get(before) != info.get(accepted.parameters))
+      config_.parameter_origins.erase(std::string(info.name));
   return barrier;
 }
 
@@ -340,19 +379,23 @@ std::uint64_t Service::Post(ControlRequest request) {
 }
 
 std::uint64_t Service::PostCommand(Command command) {
-  CheckNotRestoring();
   const bool ends = command.type == CommandType::kStop || command.type == CommandType::kCancelJob ||
                     command.type == CommandType::kRelease;
-  const std::size_t most = config_.budgets.commands + (ends ? kReserve : 0);
-  if (journal_.entries.size() + control_.backlog() >= most)
+  CheckMayPost(1, ends ? kReserve : 0);
+  ControlRequest request;
+  request.command = std::move(command);
+  return Post(std::move(request));
+}
+
+void Service::CheckMayPost(std::size_t commands, std::size_t reserve) const {
+  CheckNotRestoring();
+  const std::size_t known = journal_.entries.size() + control_.backlog();
+  if (known + commands > config_.budgets.commands + reserve)
     throw RpcException(
         ErrorCode::kBusy,
         fmt::format("the run has {} commands, as many as are kept of one", journal_.entries.size()),
         "regrasp reset");
-  CheckRoom(1);
-  ControlRequest request;
-  request.command = std::move(command);
-  return Post(std::move(request));
+  CheckRoom(commands);
 }
 
 void Service::CheckRoom(std::size_t commands) const {

@@ -161,10 +161,10 @@ class Service {
   Json ChangedParameters() const;
   /// Where the present value comes from: the table's source while it is the default.
   std::string SourceOfValue(const ParameterInfo& info) const;
-  /// The commands, whose values are allowed, are queued together; or, with busy or bad state
-  /// thrown, not at all. Returns the
-  /// request after which all have taken effect, 0 where there are none.
-  std::uint64_t SetParameters(const std::vector<Command>& commands);
+  /// The commands, whose values are allowed, are queued together, presets first; or, with busy or
+  /// bad state thrown, not at all. Returns the request after which all have taken effect, 0 where
+  /// there are none.
+  std::uint64_t SetParameters(std::vector<Command> commands);
 
   /// Throws busy, bad state or simulation fault unless the command may be given now.
   void CheckAllowed(CommandType type) const;
@@ -183,6 +183,13 @@ class Service {
 
  private:
   void TakeIn(const JournalNews& news);
+  /// The defaults with what the present preset sets.
+  Parameters PresetValues() const;
+  /// Puts parameters in an order in which the job can do with each step on the way: the control
+  /// thread judges them one by one. Throws bad state where there is none.
+  void OrderForJob(const JobRecord& job, std::vector<Command>* commands) const;
+  /// Throws busy where so many commands cannot be taken, now or of one run.
+  void CheckMayPost(std::size_t commands, std::size_t reserve) const;
   /// Tells of a recording that has ended by itself.
   void LookAfterRecorder();
   /// An event of the daemon's own.

@@ -43,11 +43,11 @@ class Parameters(DaemonCase):
 
     def test_a_saved_file_brings_everything_back(self):
         file = self.dir / "mine.toml"
-        for name, value in (("gait.mode", "exploring"), ("gait.hop", "false"), ("gravity", "0,0.1,-9.7"), ("exploration.max_cycles", "700"),
+        for name, value in (("gait.preset", "paper"), ("gait.margin_min", "0.05"), ("gait.hop", "false"), ("gravity", "0,0.1,-9.7"), ("exploration.max_cycles", "700"),
                             ("exploration.lambda", "0.123456789012345678")):
             self.expect(0, "param", "set", name, value)
         before = self.changed()
-        self.assertIn("5 parameters", self.expect(0, "param", "save", file).stdout)
+        self.assertIn("10 parameters", self.expect(0, "param", "save", file).stdout)
         self.assertEqual(self.expect(0, "param", "save", "-").stdout, file.read_text())
         self.expect(0, "param", "reset")
         self.expect(0, "param", "load", file)
@@ -76,7 +76,7 @@ class Parameters(DaemonCase):
             self.assertEqual(self.changed(), {}, text)
         self.refused(6, "param", "load", self.dir / "absent.toml")
         self.refused(74, "param", "save", self.dir / "absent" / "x.toml")
-        self.assertEqual([path.name for path in self.dir.iterdir() if path.name.endswith(".part")], [])
+        self.assertEqual([path.name for path in self.dir.iterdir() if path.name.endswith(".part") or path.name.startswith(".")], [])
 
 
 if __name__ == "__main__":

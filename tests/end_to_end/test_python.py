@@ -56,6 +56,17 @@ class Private(Case):
         with self.assertRaisesRegex(RuntimeError, "no_such_object"):
             regrasp.start(object="no_such_object")
 
+    def test_a_refused_setting_leaves_nothing_open(self):
+        before = os.listdir("/proc/self/fd")
+        with self.assertRaisesRegex(regrasp.Error, "walk"):
+            regrasp.start(gait__mode="walk")
+        self.assertEqual(os.listdir("/proc/self/fd"), before)
+
+    def test_settings_hold_beside_a_preset(self):
+        with regrasp.start(gait__preset="paper", gait__margin_min=0.05) as hand:
+            changed = hand.status()["changed_parameters"]
+        self.assertEqual((changed["gait.margin_min"], changed["gait.mode"]), (0.05, "exploring"))
+
     def test_study(self):
         env = environment(PYTHONPATH=str(SOURCE / "cli" / "python"), REGRASP_BIN_DIR=str(BIN))
         ran = subprocess.run([sys.executable, SOURCE / "examples/study.py", "1"], env=env, capture_output=True, text=True, timeout=HANG_S, check=False)

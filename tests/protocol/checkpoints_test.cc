@@ -108,6 +108,23 @@ TEST_F(Checkpoints, OutliveTheDaemonAndAReset) {
   EXPECT_EQ(list[0]["same_build"], true);
 }
 
+TEST_F(Checkpoints, BringTheirStepperWithThemAndStatusTellsIt) {
+  SaveInTheGrasp();
+  ASSERT_EQ(client->Result("status")["stepper"], "fast");
+  client.reset();
+  Finish();
+  config.stepper = "exact";
+  Start();
+  client = Connect();
+  EXPECT_EQ(client->Result("status")["stepper"], "exact");
+  EXPECT_EQ(Restore({{"name", "start"}})["state"], "done");
+  for (const char* reset : {"", "reset"}) {  // later runs keep it
+    if (*reset) client->Result(reset);
+    EXPECT_EQ(client->Result("status")["stepper"], "fast") << reset;
+    EXPECT_EQ(client->Result("identity")["stepper"], "fast") << reset;
+  }
+}
+
 TEST_F(Checkpoints, ThatWereChangedAreRefusedAtTheTickAndThePresentRunGoesOn) {
   SaveInTheGrasp();
   const std::string path = saved["path"];

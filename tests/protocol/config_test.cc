@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "daemon/config/reload.h"
 #include "tests/protocol/daemon_fixture.h"
 
 namespace regrasp::test {
@@ -107,6 +108,19 @@ TEST_F(DaemonTest, ParametersOfTheFileAreInForce) {
   config.parameters.emplace_back("object.friction", Vector3d(0.6, 0, 0));
   Start();
   EXPECT_EQ(Connect()->Result("truth")["object"]["friction"], 0.6);
+}
+
+TEST(Reload, SetsAgainWhatANewPresetOverwrites) {
+  DaemonConfig running;
+  running.parameters = {{"gait.margin_min", Vector3d(0.05, 0, 0)},
+                        {"object.friction", Vector3d(0.5, 0, 0)}};
+  DaemonConfig wanted = running;
+  EXPECT_TRUE(PlanReload(running, wanted).calls.empty());
+  wanted.parameters.emplace_back("gait.preset", Vector3d(1, 0, 0));  // sorted after margin_min
+  const ReloadPlan plan = PlanReload(running, wanted);
+  ASSERT_EQ(plan.calls.size(), 2u);
+  EXPECT_EQ(plan.calls[0].params, JsonIn({{"name", "gait.preset"}, {"value", "paper"}}));
+  EXPECT_EQ(plan.calls[1].params, JsonIn({{"name", "gait.margin_min"}, {"value", 0.05}}));
 }
 
 }  // namespace

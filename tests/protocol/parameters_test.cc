@@ -112,6 +112,115 @@ TEST_F(ParameterRequests, ManyAreSetOrNone) {
   EXPECT_EQ(Changed(), Names{});
 }
 
+TEST_F(ParameterRequests, APresetDoesNotUndoWhatIsSetWithIt) {
+  const auto load = [&](const Json& values) {
+    return client->Result("param.load", {{"parameters", values}});
+  };
+  client->Result("param.set", {{"name", "gait.preset"}, {"value", "paper"}});
+  client->Result("param.set", {{"name", "gait.margin_min"}, {"value", 0.05}});
+  const Json saved = client->Result("status")["changed_parameters"];
+  EXPECT_EQ(saved["gait.margin_min"], 0.05);
+  EXPECT_EQ(saved["gait.mode"], "exploring");
+  client->Result("param.reset");
+  EXPECT_EQ(Changed(), Names{});
+  load(saved);
+  EXPECT_EQ(client->Result("status")["changed_parameters"], saved);
+  // Also where only the preset changes what already has the value.
+  client->Result("param.reset", {{"name", "gait.preset"}});
+  client->Result("param.set", {{"name", "gait.margin_min"}, {"value", 0.05}});
+  const Json kept = load({{"gait.margin_min", 0.05}, {"gait.preset", "paper"}})["kept"];
+  EXPECT_EQ(client->Result("status")["changed_parameters"], saved);
+  EXPECT_EQ(kept, Json::object());
+}
+
+TEST_F(ParameterRequests, WhatAPresetChangesIsListedAndNamesIt) {
+  client->Result("param.set", {{"name", "gait.preset"}, {"value", "paper"}});
+  EXPECT_EQ(Get("gait.preset")["source"], "set while running");
+  EXPECT_EQ(Get("gait.mode")["source"], "gait.preset");
+  client->Result("param.set", {{"name", "gait.max_excursion"}, {"value", 0.02}});
+  EXPECT_EQ(Get("gait.max_excursion")["source"], "set while running");
+  const Names changed = Changed();
+  EXPECT_EQ(changed, (Names{"gait.forgive", "gait.margin_min", "gait.max_excursion", "gait.mode",
+                            "gait.plan", "gait.preset"}));
+  Names listed;
+  for (const Json& p : client->Result("param.reset", {{"name", "gait.preset"}})["parameters"]) {
+    listed.push_back(p["name"]);
+    EXPECT_NE(p["before"], p["value"]) << p.dump();
+    EXPECT_EQ(p["changed"], false);
+  }
+  EXPECT_EQ(listed, changed);
+  EXPECT_EQ(Changed(), Names{});
+}
+
+TEST_F(ParameterRequests, ABatchThatARunningJobCanDoWithIsTakenWhole) {
+  const auto finish = [&](const char* job, const Json& params) {
+    const Json id = client->Result(job, params)["job"];
+    client->Result(
+        "job.wait",
+        {{"id", client->Result("step", {{"ticks", 200'000}, {"until_job_ends", true}})["job"]}});
+    return client->Result("job.get", {{"id", id}});
+  };
+  const auto step = [&](int ticks) {
+    client->Result("job.wait", {{"id", client->Result("step", {{"ticks", ticks}})["job"]}});
+  };
+  ASSERT_EQ(finish("grasp", Json::object())["state"], "done");
+  client->Result("param.set", {{"name", "gait.mode"}, {"value", "exploring"}});
+  client->Result("rotate", {{"turns", 1}});
+  step(100);
+  ASSERT_EQ(client->Result("status")["state"], "rotating");
+  // In the order of names the first would be too slow for the mode that still is.
+  client->Result(
+      "param.load",
+      {{"parameters", {{"control.stability_measure", "epsilon"}, {"gait.mode", "returning"}}}});
+  step(10);
+  EXPECT_EQ(client->Result("quality")["stability_measure"], "epsilon");
+  // The way back, and what has no way.
+  EXPECT_EQ(client->Error("param.load", {{"parameters", {{"gait.mode", "exploring"}}}}), -32002);
+  client->Result(
+      "param.load",
+      {{"parameters",
+        {{"control.stability_measure", "min_singular_value"}, {"gait.mode", "exploring"}}}});
+  EXPECT_EQ(client->Error(
+                "param.load",
+                {{"parameters", {{"control.stability_measure", "epsilon"}, {"gait.lead", 0.25}}}}),
+            -32002);
+  step(10);
+  EXPECT_EQ(client->Result("quality")["stability_measure"], "min_singular_value");
+  const Json events = client->Result("events")["events"];
+  for (const Json& event : events)
+    EXPECT_FALSE(event["text"].get<std::string>().starts_with("refused:")) << event.dump();
+}
+
+TEST_F(ParameterRequests, ABatchThatNoLongerFitsIntoTheRunIsLeftOutWhole) {
+  Finish();
+  config.max_commands = 1;
+  Start();
+  client = Connect();
+  EXPECT_EQ(
+      client->Error("param.load", {{"parameters", {{"gait.hop", false}, {"gait.lead", 0.25}}}}),
+      -32001);
+  EXPECT_EQ(Changed(), Names{});
+  EXPECT_EQ(client->Error("param.load", {{"parameters", {{"gait.hop", false}}}}), 0);
+}
+
+TEST_F(DaemonTest, AConfiguredPresetDoesNotUndoWhatIsConfiguredWithIt) {
+  config.parameters.emplace_back("gait.margin_min", Vector3d(0.05, 0, 0));
+  config.parameters.emplace_back("gait.preset", Vector3d(1, 0, 0));
+  config.origins["parameters.gait.margin_min"] = "regraspd.toml:2";
+  config.origins["parameters.gait.preset"] = "regraspd.toml:3";
+  Start();
+  const auto client = Connect();
+  const auto get = [&](const char* name) { return client->Result("param.get", {{"name", name}}); };
+  ASSERT_EQ(get("gait.preset")["value"], "paper");
+  EXPECT_EQ(get("gait.margin_min")["value"], 0.05);
+  EXPECT_EQ(get("gait.margin_min")["source"], "configuration, regraspd.toml:2");
+  EXPECT_EQ(get("gait.mode")["value"], "exploring");
+  EXPECT_EQ(get("gait.mode")["source"], "gait.preset");
+  // Overwritten by a preset it is the configuration's no longer.
+  client->Result("param.set", {{"name", "gait.preset"}, {"value", "paper"}});
+  EXPECT_EQ(get("gait.margin_min")["source"], "gait.preset");
+}
+
 TEST_F(DaemonTest, AConfiguredValueTellsItsPlace) {
   config.parameters.emplace_back("gait.lead", Vector3d(0.25, 0, 0));
   config.origins["parameters.gait.lead"] = "/etc/regrasp/regraspd.toml:7";

@@ -73,10 +73,14 @@ def start(seed=1, hand=None, object=None, noise=None, clock="lockstep", stepper=
     daemon = _Daemon(words, output_dir)
     try:
         connected = Hand(daemon.socket, daemon)
-        for name, value in settings.items():
-            connected.call("param.set", name=name.replace("__", "."), value=value)
     except BaseException:
         daemon.stop()
+        raise
+    try:
+        if settings:
+            connected.call("param.load", parameters={name.replace("__", "."): value for name, value in settings.items()})
+    except BaseException:
+        connected.close()
         raise
     return connected
 
