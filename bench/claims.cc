@@ -13,7 +13,6 @@
 // --exact --rows (a line per trial). Trials run in two processes (--jobs N); each is reproducible
 // alone from its seed.
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -27,8 +26,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/children.h"
+#include "bench/settings.h"
 #include "core/common/random.h"
 #include "core/hand/scenario.h"
+#include "core/session/completed.h"
 #include "core/session/session.h"
 
 using namespace regrasp;
@@ -43,7 +45,7 @@ struct Options {
   double seconds = 60, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0, offset_mm = 0;
   std::string axis = "0,0,-1";
   bool exact = false, rows = false, exploring = false;
-  std::vector<std::pair<std::string, double>> set;
+  std::vector<ParameterSetting> set;
 };
 
 constexpr double kFailed = -1;
@@ -59,14 +61,7 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
     const double t = o.tilt * M_PI / 180;
     config.parameters.gravity_W = 9.81 * Vector3d(0, std::cos(t), std::sin(t));
   }
-  for (const auto& [name, value] : o.set) {
-    const int index = FindParameter(name);
-    if (index < 0) {
-      std::fprintf(stderr, "claims: unknown parameter %s\n", name.c_str());
-      std::exit(2);
-    }
-    SetByUser(ParameterTable()[index], Vector3d(value, 0, 0), &config.parameters);
-  }
+  Apply(o.set, &config.parameters);
   return config;
 }
 
@@ -133,8 +128,7 @@ std::vector<Row> Parallel(int n, int jobs, const std::function<Row(int)>& trial)
     }
     std::fclose(in);
   }
-  while (wait(nullptr) > 0) {
-  }
+  WaitForChildren();
   return rows;
 }
 
@@ -382,7 +376,9 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
                  static_cast<unsigned long long>(seed), Name(job.state).data(), angle, r.sim_time_s,
                  r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps, slips,
                  refused, r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
-  return {job.state == JobState::kDone ? 1.0 : 0.0,
+  const bool completed =
+      job.state == JobState::kDone && TurnedAsAsked(r.angle_rad, 2 * M_PI * o.turns);
+  return {completed ? 1.0 : 0.0,
           angle,
           r.sim_time_s > 0 ? std::abs(angle) / r.sim_time_s * 60 : 0,
           r.max_position_error_m * 1e3,
@@ -642,7 +638,7 @@ int Main(int argc, char** argv) {
       o.offset_mm = std::stod(next());
     else if (a == "--explore") {
       o.exploring = true;
-      o.set.emplace_back("gait.mode", 0);
+      o.set.push_back(ReadSetting("gait.mode=exploring"));
     } else if (a == "--tilt")
       o.tilt = std::stod(next());
     else if (a == "--push")
@@ -657,11 +653,9 @@ int Main(int argc, char** argv) {
       o.exact = true;
     else if (a == "--rows")
       o.rows = true;
-    else if (a == "--set") {
-      const std::string s = next();
-      const auto eq = s.find('=');
-      o.set.emplace_back(s.substr(0, eq), std::stod(s.substr(eq + 1)));
-    } else {
+    else if (a == "--set")
+      o.set.push_back(ReadSetting(next()));
+    else {
       std::fprintf(stderr, "claims: unknown option %s\n", a.c_str());
       return 2;
     }

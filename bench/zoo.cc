@@ -3,11 +3,12 @@
 //       [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N] [--rows] [--events]
 //       [--setting 'NAME: PARAMETER=VALUE ...'] ...
 // `zoo` (the default): every object of models/objects whose name begins with zoo_, and the cubes.
+// A trial is completed when its job is done and the object has truly turned by the angle asked for,
+// within 5 degrees. VALUE as `regrasp param set` takes it: exploring, true, 0.25.
 // Per setting: full turns, drops, what else failed, deg/min of the completed; per pair of settings:
 // trials that only one of them completed, and the exact two-sided McNemar p. Trials run in --jobs
 // processes, two by default; each is reproducible alone from its object, seed and setting.
 
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,8 +21,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/children.h"
+#include "bench/settings.h"
 #include "core/common/random.h"
 #include "core/hand/scenario.h"
+#include "core/session/completed.h"
 #include "core/session/session.h"
 #include "core/session/shape_judge.h"
 
@@ -31,7 +35,7 @@ namespace {
 
 struct Setting {
   std::string name;
-  std::vector<std::pair<std::string, double>> values;
+  std::vector<ParameterSetting> values;
 };
 
 struct Options {
@@ -59,12 +63,7 @@ Setting ParseSetting(const std::string& text) {
   const auto colon = text.find(':');
   Setting setting{text.substr(0, colon), {}};
   std::istringstream words(colon == std::string::npos ? "" : text.substr(colon + 1));
-  for (std::string word; words >> word;) {
-    const auto equals = word.find('=');
-    if (equals == std::string::npos || FindParameter(word.substr(0, equals)) < 0)
-      throw std::invalid_argument("zoo: no such PARAMETER=VALUE: " + word);
-    setting.values.emplace_back(word.substr(0, equals), std::stod(word.substr(equals + 1)));
-  }
+  for (std::string word; words >> word;) setting.values.push_back(ReadSetting(word));
   return setting;
 }
 
@@ -79,8 +78,7 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
     const double t = o.tilt * M_PI / 180;
     config.parameters.gravity_W = 9.81 * Vector3d(0, std::cos(t), std::sin(t));
   }
-  for (const auto& [name, value] : setting.values)
-    SetByUser(ParameterTable()[FindParameter(name)], Vector3d(value, 0, 0), &config.parameters);
+  Apply(setting.values, &config.parameters);
   return config;
 }
 
@@ -127,7 +125,8 @@ Trial Run(const Options& o, SessionConfig config) {
   Advance(o.limit_s * o.turns);
   const RotateResult& r = job.rotate;
   trial.shape = JudgeShape(session.felt_surface(), TrueSurface(session.config().model.object));
-  trial.done = job.id != 0 && job.state == JobState::kDone;
+  const bool ended = job.id != 0 && job.state == JobState::kDone;
+  trial.done = ended && TurnedAsAsked(r.angle_rad, command.angle_rad);
   trial.dropped = r.dropped;
   trial.angle_deg = r.angle_rad * 180 / M_PI;
   trial.time_s = r.sim_time_s;
@@ -135,7 +134,9 @@ Trial Run(const Options& o, SessionConfig config) {
   trial.tilt_deg = r.max_tilt_rad * 180 / M_PI;
   trial.regrasps = r.regrasps;
   if (job.id == 0) std::snprintf(trial.error, sizeof(trial.error), "too slow");
-  if (!trial.done && job.id != 0) std::memcpy(trial.error, job.error, sizeof(trial.error));
+  if (!ended && job.id != 0) std::memcpy(trial.error, job.error, sizeof(trial.error));
+  if (ended && !trial.done)
+    std::snprintf(trial.error, sizeof(trial.error), "%s", "not turned by the angle asked for");
   return trial;
 }
 
@@ -196,8 +197,8 @@ std::vector<Trial> RunAll(const Options& o) {
         trial.shape.normal_rad * 180 / M_PI, trial.error);
     std::fflush(stdout);
   }
-  while (wait(nullptr) > 0) {
-  }
+  close(ends[0]);
+  WaitForChildren();
   return trials;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/experiment/phi_map.h"
 #include "cli/print/print.h"
 #include "core/common/random.h"
+#include "core/session/completed.h"
 
 namespace regrasp::cli {
 namespace {
@@ -162,7 +163,9 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
       turned ? Json(std::abs(angle) / (record.at("gait_cycles").get<double>() + 1)) : Json();
   row["angle_error_rad"] =
       turned ? Json(std::abs(angle - 2 * std::numbers::pi * turns_wanted)) : Json();
-  const bool completed = row["outcome"] == "done";
+  // The job ends where the controller believes that it has turned the object.
+  const bool completed = row["outcome"] == "done" && turned &&
+                         TurnedAsAsked(angle, 2 * std::numbers::pi * turns_wanted);
   row["rate_deg_min"] =
       completed && time > 0 ? Json(std::abs(angle) * 180 / std::numbers::pi / time * 60) : Json();
   row["completed"] = completed;
@@ -180,8 +183,9 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
 }  // namespace
 
 void Prepare(SteppedDaemon* daemon, const Plan& plan, std::size_t which) {
-  for (const auto& [name, value] : Parameters(plan.setting(which)))
-    daemon->Call("param.set", {{"name", name}, {"value", value}});
+  Json parameters = Json::object();
+  for (const auto& [name, value] : Parameters(plan.setting(which))) parameters[name] = value;
+  daemon->Call("param.load", {{"parameters", std::move(parameters)}});
 }
 
 UnitResult RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
