@@ -25,7 +25,7 @@ constexpr Example kExamples[] = {
     {"move", "regrasp move --by 0,0,5 --wait", "5 mm along z, without a regrasp"},
     {"move", "regrasp move --by 2,0,0 --turn 0,0,-15 --wait", "a shift and a turn at once"},
     {"explore", "regrasp explore ring --wait", "until its grasp gets no better"},
-    {"explore", "regrasp explore middle --criterion switched --seed 3 --max-cycles 2000 --wait", "switched measures, another start"},
+    {"explore", "regrasp explore middle --criterion switched --seed 3 --max-cycles 6000 --wait", "switched measures, another start"},
     {"stop", "regrasp stop", "end what goes on, keep holding"},
     {"pause", "regrasp pause", "stop the clock"},
     {"resume", "regrasp resume", "let it run again"},
