@@ -1,7 +1,8 @@
 // Measures what the README claims, straight on the session (no daemon): every table names this
 // command.
 //   claims hold      [--seeds N] [--first S] [--seconds T]   six gravity directions
-//   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg
+//   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg,
+//                    or those of --object A,B,... (names or .urdf files) [--inertia-from-shape]
 //   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
 //   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all]
 //                    [--speed DEG_S] [--explore] [--push N]  a push of so much for 0.1 s a second
@@ -22,6 +23,7 @@
 #include <cstring>
 #include <functional>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -44,7 +46,7 @@ struct Options {
   std::uint64_t first = 1;
   double seconds = 60, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0, offset_mm = 0;
   std::string axis = "0,0,-1";
-  bool exact = false, rows = false, exploring = false;
+  bool exact = false, rows = false, exploring = false, inertia_from_shape = false;
   std::vector<ParameterSetting> set;
 };
 
@@ -52,7 +54,9 @@ constexpr double kFailed = -1;
 
 SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string& object) {
   SessionConfig config;
-  config.model = LoadScenario(o.hand, object, ModelSearchPath());
+  LoadOptions load;
+  load.inertia_from_shape = o.inertia_from_shape;
+  config.model = LoadScenario(o.hand, object, ModelSearchPath(), load);
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
@@ -213,12 +217,13 @@ int Hold(const Options& o) {
 }
 
 int Objects(const Options& o) {
-  for (const char* object : {"sphere_45mm", "sphere", "sphere_60mm", "egg"}) {
+  std::istringstream list(o.object.empty() ? "sphere_45mm,sphere,sphere_60mm,egg" : o.object);
+  for (std::string object; std::getline(list, object, ',');) {
     const auto rows = Parallel(o.seeds, o.jobs, [&](int k) {
       Session session(MakeConfig(o, o.first + k, object));
       return HoldTrial(session, o.seconds);
     });
-    PrintHold(object, rows);
+    PrintHold(object.c_str(), rows);
   }
   return 0;
 }
@@ -653,6 +658,8 @@ int Main(int argc, char** argv) {
       o.exact = true;
     else if (a == "--rows")
       o.rows = true;
+    else if (a == "--inertia-from-shape")
+      o.inertia_from_shape = true;
     else if (a == "--set")
       o.set.push_back(ReadSetting(next()));
     else {
@@ -660,7 +667,8 @@ int Main(int argc, char** argv) {
       return 2;
     }
   }
-  MakeConfig(o, o.first, o.object);  // throws here, before any trial, what is wrong with them
+  if (o.what != "objects")
+    MakeConfig(o, o.first, o.object);  // throws here, before any trial, what is wrong with them
   if (o.what == "hold") return Hold(o);
   if (o.what == "objects") return Objects(o);
   if (o.what == "explore") return Explore(o);

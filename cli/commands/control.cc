@@ -63,6 +63,8 @@ ExitCode Reset(Context& context, const Invocation& invocation) {
   context.Print(answer, [&] {
     context.out().Line(fmt::format("new run: object {}, seed {}", Plain(At(answer, "object")),
                                    Plain(At(answer, "seed"))));
+    for (const Json& warning : At(answer, "warnings"))
+      context.out().Line("warning: " + Plain(warning));
     const std::string changed = ChangedText(At(answer, "changed_parameters"));
     if (!changed.empty())
       context.out().Line(

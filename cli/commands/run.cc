@@ -153,13 +153,15 @@ ExitCode Up(Context& context, const Invocation& invocation) {
   Client client(socket, context.timeout_s());
   const Json status = client.Call("status", Json::object());
   if (running) CheckSame(invocation, words, wanted, socket, status);
-  for (const char* key : {"version", "hand", "object", "clock"}) answer[key] = At(status, key);
+  for (const char* key : {"version", "hand", "object", "clock", "warnings"})
+    answer[key] = At(status, key);
   context.Print(answer, [&] {
     Output& out = context.out();
     out.Line(fmt::format("regraspd {} {} on {}", Plain(answer["version"]),
                          running ? "is already running" : "is ready", socket));
     out.Line(fmt::format("  hand {}, object {}, {} clock", Plain(answer["hand"]),
                          Plain(answer["object"]), Plain(answer["clock"])));
+    for (const Json& warning : answer["warnings"]) out.Line("  warning: " + Plain(warning));
     if (!running)
       out.Line(fmt::format("  pid {}, log {}", Plain(answer["pid"]), Plain(answer["log"])));
   });

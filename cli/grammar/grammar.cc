@@ -9,6 +9,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/commands/hand.h"
+#include "cli/commands/object.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
@@ -117,8 +118,9 @@ CommandSpec MethodCommand(std::string_view method, std::string group, Handler ru
 const std::vector<CommandSpec>& Commands() {
   static const std::vector<CommandSpec> kCommands = [] {
     std::vector<CommandSpec> all;
-    for (auto* group : {RunCommands, ControlCommands, InspectCommands, ResultCommands,
-                        ExperimentCommands, HandCommands, ToolCommands, ConfigCommands}) {
+    for (auto* group :
+         {RunCommands, ControlCommands, InspectCommands, ResultCommands, ExperimentCommands,
+          HandCommands, ObjectCommands, ToolCommands, ConfigCommands}) {
       for (auto& command : group()) all.push_back(std::move(command));
     }
     return all;

@@ -100,6 +100,10 @@ constexpr Example kExamples[] = {
     {"hand new", "regrasp hand new my_hand.urdf -o my_hand.toml", "then: up --hand my_hand.toml"},
     {"hand new", "regrasp hand new my_hand.urdf -o big.toml --object-size 60 --seed 2", "for a larger ball"},
 
+    {"object show", "regrasp object show egg", "an object of the search path"},
+    {"object show", "regrasp object show my_object.urdf -o my_object.png", "a file, and its picture"},
+    {"object show", "regrasp object show my_object.urdf --inertia-from-shape", "its inertia computed"},
+
     {"evaluate", "regrasp evaluate grasp.json", "measures of a grasp in a file"},
     {"call", "regrasp call status", "any method of the wire"},
     {"call", R"(regrasp call describe '{"method": "explore"}')", "with parameters"},

@@ -36,18 +36,22 @@ int CountPieces(const ObjectModel& object) {
 class ObjectReader {
  public:
   ObjectReader(const std::filesystem::path& path, const LoadOptions& options, ModelReport* report,
-               ObjectFacts* facts)
+               ObjectFacts* facts, const Matrix3d& R_OL)
       : problems_(path.string()),
         file_(ReadUrdf(path, &problems_)),
         options_(options),
         report_(report),
-        facts_out_(facts) {}
+        facts_out_(facts),
+        R_OL_(R_OL) {}
 
   ObjectModel Read() {
     problems_.ThrowIfAny();
     const UrdfLink& root = file_.links[static_cast<std::size_t>(file_.root)];
     element_ = LinkElement(root.name);
     collisions_ = root.collisions;
+    Isometry3d X_OL = Isometry3d::Identity();
+    X_OL.linear() = R_OL_;
+    for (UrdfCollision& collision : collisions_) collision.X_LG = X_OL * collision.X_LG;
     if (file_.links.size() > 1)
       problems_.Add(file_.links[1].line, "an object has exactly one link; this file has {}",
                     file_.links.size());
@@ -60,11 +64,13 @@ class ObjectReader {
       problems_.Add(root.line, "{}: has no <collision>; an object has at least one", element_);
     problems_.ThrowIfAny();
     inertial_ = *root.inertial;
+    inertial_.X_LI = X_OL * inertial_.X_LI;
     object_.name = file_.name;
     ReadShape();
     problems_.ThrowIfAny();
     ReadBody();
     problems_.ThrowIfAny();
+    facts_.p_LCom = R_OL_.transpose() * facts_.p_LCom;
     if (facts_out_ != nullptr) *facts_out_ = facts_;
     return std::move(object_);
   }
@@ -194,6 +200,7 @@ class ObjectReader {
   ModelReport* report_;
   ObjectFacts* facts_out_;
   ObjectFacts facts_;
+  Matrix3d R_OL_;
   std::string element_;
   std::vector<UrdfCollision> collisions_;
   UrdfInertial inertial_;
@@ -203,8 +210,8 @@ class ObjectReader {
 }  // namespace
 
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options,
-                           ModelReport* report, ObjectFacts* facts) {
-  return ObjectReader(urdf_file, options, report, facts).Read();
+                           ModelReport* report, ObjectFacts* facts, const Matrix3d& R_OL) {
+  return ObjectReader(urdf_file, options, report, facts, R_OL).Read();
 }
 
 ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options,
@@ -213,16 +220,20 @@ ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions o
   toml_file.replace_extension(".toml");
   std::error_code ignored;
   double friction = ObjectModel().friction;
+  Matrix3d R_OL = Matrix3d::Identity();
   if (std::filesystem::is_regular_file(toml_file, ignored)) {
     const TomlFile file(toml_file);
-    file.CheckKeys(file.root(), {"friction", "inertia_from_shape", "force"});
+    file.CheckKeys(file.root(), {"friction", "rotation_deg", "inertia_from_shape", "force"});
     if (const toml::node* node = file.root().get("friction"))
       friction = file.Number(*node, "friction", 1e-3, 1);
+    if (file.root().contains("rotation_deg"))
+      R_OL = FromRotationVector(file.Vector(file.root(), "rotation_deg", 360) * M_PI / 180)
+                 .toRotationMatrix();
     options.inertia_from_shape |= file.Flag(file.root(), "inertia_from_shape");
     options.force |= file.Flag(file.root(), "force");
     file.ThrowIfAny();
   }
-  ObjectModel model = LoadObjectUrdf(urdf_file, options, report, facts);
+  ObjectModel model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL);
   model.name = urdf_file.stem().string();
   model.friction = friction;
   return model;

@@ -22,13 +22,16 @@ struct ObjectFacts {
 /// spheres, cylinders (read as capsules), boxes and closed meshes, which together are one body. A
 /// sphere, capsule or box alone, in the link's axes about the centre of mass, stays what it is;
 /// anything else becomes one mesh (round pieces by facets, primitive_mesh.h), and where pieces
-/// overlap the body is their union. The origin is moved to the centre of mass. A body that cannot
+/// overlap the body is their union. The origin is moved to the centre of mass, and the link
+/// turned by `R_OL` first. A body that cannot
 /// be is refused with the flag that mends it. Adds to `report` and `facts` where given. Throws
 /// ModelError with all that is wrong, each with its line.
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options = {},
-                           ModelReport* report = nullptr, ObjectFacts* facts = nullptr);
+                           ModelReport* report = nullptr, ObjectFacts* facts = nullptr,
+                           const Matrix3d& R_OL = Matrix3d::Identity());
 
 /// The same with what the .toml file of the same name beside it says: friction,
+/// rotation_deg (a rotation vector: how the link is turned to be presented to the hand),
 /// inertia_from_shape, force. The object is called as the file.
 ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options = {},
                            ModelReport* report = nullptr, ObjectFacts* facts = nullptr);

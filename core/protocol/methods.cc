@@ -508,7 +508,8 @@ constexpr std::array kMethods = {
                "file, path, messages, bytes, dropped"},
     MethodSpec{"release", "release", "open the hand", kNone, true, "job"},
     MethodSpec{"reset", "reset", "start a new run; parameters and noise levels stay", kReset, false,
-               "seed, object, changed_parameters: {NAME: value} that stay"},
+               "seed, object, changed_parameters: {NAME: value} that stay, warnings [] (why "
+               "this object cannot be grasped where it begins)"},
     MethodSpec{"resume", "resume", "let the clock of the simulation run again", kNone, false,
                "paused, tick"},
     MethodSpec{
@@ -526,15 +527,15 @@ constexpr std::array kMethods = {
     MethodSpec{
         "shutdown", "down", "stop the daemon cleanly", kNone, false,
         "stopping, activated (true: the service manager starts another at the next connection)"},
-    MethodSpec{
-        "status", "status", "state of daemon and simulation", kNone, false,
-        "version, protocol, state, paused, clock (continuous, lockstep), "
-        "advancing (time goes on now), tick, time_s, state_hash, real_time_factor, "
-        "speed, stepper, tick_p99_s, seed, hand, object, job, gait: {active, phase, finger, state, "
-        "reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, "
-        "incident (the last drop: "
-        "tick, cause, record, "
-        "picture; or null), noise, clients, ..."},
+    MethodSpec{"status", "status", "state of daemon and simulation", kNone, false,
+               "version, protocol, state, paused, clock (continuous, lockstep), "
+               "advancing (time goes on now), tick, time_s, state_hash, real_time_factor, "
+               "speed, stepper, tick_p99_s, seed, hand, object, warnings, job, gait: {active, "
+               "phase, finger, state, "
+               "reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, "
+               "incident (the last drop: "
+               "tick, cause, record, "
+               "picture; or null), noise, clients, ..."},
     MethodSpec{"step", "step", "advance a simulation that is paused, or stands still in lockstep",
                kStep, true, "job"},
     MethodSpec{"stop", "stop", "end the current job and keep holding", kNone, false,

@@ -39,6 +39,7 @@ Json StatusJson(Service& service) {
       {"seed", frame.seed},
       {"hand", service.hand().name},
       {"object", service.accepted.object->name},
+      {"warnings", service.accepted.warnings},
       {"stand_in", frame.stand_in},
       {"holds_alone", HoldsAlone(frame.state, frame.stand_in)},
       {"job", std::move(job)},

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/hand/kinematics.h"
+#include "core/world/start_overlap.h"
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/output/output_file.h"
@@ -40,10 +42,25 @@ Service::Service(ServiceConfig config, Host* host)
   accepted.parameters = session.parameters;
   accepted.noise = session.noise;
   accepted.seed = session.seed;
-  accepted.object = std::make_shared<const ObjectModel>(session.model.object);
+  AcceptObject(std::make_shared<const ObjectModel>(session.model.object));
   accepted.paused = config_.control.paused;
   RemoveAbandonedDrafts(config_.output_dir);
   Drain();
+}
+
+void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
+  const Scenario& scenario = config_.control.session.model.scenario;
+  KinematicsData data;
+  ForwardKinematics(hand(), scenario.q_preshape, &data);
+  const std::vector<Isometry3d> X_WL(
+      data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(hand().links.size()));
+  const StartOverlap overlap = DeepestOverlap(hand(), X_WL, *object, scenario.X_WO);
+  accepted.object = std::move(object);
+  accepted.warnings.clear();
+  if (overlap.depth > kStartOverlap)
+    accepted.warnings.push_back(fmt::format(
+        "the object begins {:.1f} mm inside the link {}; grasp will refuse", 1e3 * overlap.depth,
+        hand().links[static_cast<std::size_t>(overlap.link)].name));
 }
 
 Outcome Service::Call(const std::string& method, const JsonIn& params, Client* client) {
@@ -156,7 +173,7 @@ void Service::TakeIn(const JournalNews& news) {
       accepted.parameters = news.start->parameters;
       accepted.noise = news.start->noise;
       accepted.seed = news.start->seed;
-      accepted.object = std::make_shared<const ObjectModel>(journal_.config.model.object);
+      AcceptObject(std::make_shared<const ObjectModel>(journal_.config.model.object));
       break;
     case JournalNews::Kind::kCommand:
       journal_.entries.push_back(news.entry);

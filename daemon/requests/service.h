@@ -152,8 +152,11 @@ class Service {
     NoiseLevels noise;
     std::uint64_t seed = 1;
     std::shared_ptr<const ObjectModel> object;
+    /// What keeps this object from being grasped: it begins inside a link.
+    std::vector<std::string> warnings;
     bool paused = false;
   } accepted;
+  void AcceptObject(std::shared_ptr<const ObjectModel> object);
 
   /// What the parameters are unless somebody changes them: built in, or of the present models.
   Parameters DefaultValues() const;

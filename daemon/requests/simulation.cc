@@ -204,14 +204,15 @@ std::uint64_t PostReset(Service& service, std::uint64_t seed,
   Service::Accepted& accepted = service.accepted;
   accepted.seed = seed;
   accepted.parameters = ParametersAfterReset(accepted.parameters, object.get());
-  if (object) accepted.object = object;
+  if (object) service.AcceptObject(object);
   return barrier;
 }
 
 Json ResetAnswer(const Service& service) {
   return {{"seed", service.accepted.seed},
           {"object", service.accepted.object->name},
-          {"changed_parameters", service.ChangedParameters()}};
+          {"changed_parameters", service.ChangedParameters()},
+          {"warnings", service.accepted.warnings}};
 }
 
 /// The file is read by the worker thread: a mesh may take seconds.

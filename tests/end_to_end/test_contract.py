@@ -20,12 +20,12 @@ ELSEWHERE = {
 ENDLESS = {"events -f"}
 # The exit codes an example may have besides 0: the operation was carried out and did not succeed.
 MAY_FAIL = {"explore": {1}, "rotate": {1}, "move": {1}}
-UNITS = ("_m", "_rad", "_n", "_s", "_nm", "_hz", "_kg", "_mm", "_deg", "_bytes", "_m_s", "_rad_s", "_m_s2", "_n_s", "_1_m", "_fraction", "_wxyz", "_W", "_id", "_j")
+UNITS = ("_m", "_rad", "_n", "_s", "_nm", "_hz", "_kg", "_mm", "_deg", "_bytes", "_m_s", "_rad_s", "_m_s2", "_m3", "_kg_m3", "_kg_m2", "_n_s", "_1_m", "_fraction", "_wxyz", "_W", "_id", "_j")
 # Numbers without a unit, and why: counts, numbers of things, ratios, measures without dimension.
 PLAIN = re.compile(
     r"(tick|ticks|seq|dropped|id|job|sub|seed|clients|backlog|protocol|pid|cycles?|turns|steps?|count|bytes|code|max_cycles|exit_code|frames?|number|runs?|commands|messages|segments|continues|"
     r"progress|real_time_factor|speed|friction|mu|phi\w*|manipulability|stability|threshold|epsilon|volume|isotropy|sqrt_det|min_singular_value|"
-    r"value|before|changed_parameters|kept|min|max|default|normal\w*|\w+_tick|frames_dropped|\w+_cycles|regrasps|ticks_per_s|reload|rows?|columns?|\d+|force_closure|axis|gradient_norm\w*|size|\w+_frames)$")
+    r"value|before|changed_parameters|kept|min|max|default|normal\w*|\w+_tick|frames_dropped|\w+_cycles|regrasps|ticks_per_s|reload|rows?|columns?|\d+|force_closure|axis|principal_axes|pieces|collisions|triangles|gradient_norm\w*|size|\w+_frames)$")
 
 
 def numbers(value, path=()):

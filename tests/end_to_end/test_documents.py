@@ -58,6 +58,7 @@ class Documents(DaemonCase):
         super().setUp()
         shutil.copy(SOURCE / "examples/grasp.json", self.dir)
         shutil.copy(SOURCE / "models/hands/shadow.urdf", self.dir / "my_hand.urdf")
+        shutil.copy(SOURCE / "models/objects/sphere.urdf", self.dir / "my_object.urdf")
         (self.dir / "hand.toml").write_text("seed = 3\n")
         self.env = environment(PATH=f"{BIN}:/usr/bin:/bin", REGRASP_SOCKET=str(self.socket), HOME=str(self.dir), REGRASP_MODELS_DIR=str(SOURCE / "models"),
                                REGRASP_OUTPUT_DIR=str(self.dir / "out"))

@@ -268,7 +268,8 @@ class Methods:
         """Start a new run; parameters and noise levels stay.
         seed: seed of the new run; 0 to 9007199254740992; left out: the present seed.
         object: another object, by name; left out: the present object.
-        Returns seed, object, changed_parameters: {NAME: value} that stay.
+        Returns seed, object, changed_parameters: {NAME: value} that stay, warnings [] (why this object cannot be
+            grasped where it begins).
         """
         return self._ask("reset", {"seed": seed, "object": object})
 
@@ -310,8 +311,8 @@ class Methods:
     def status(self) -> dict:
         """State of daemon and simulation.
         Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
-            time_s, state_hash, real_time_factor, speed, stepper, tick_p99_s, seed, hand, object, job, gait:
-            {active, phase, finger, state, reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles,
+            time_s, state_hash, real_time_factor, speed, stepper, tick_p99_s, seed, hand, object, warnings, job,
+            gait: {active, phase, finger, state, reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles,
             regrasps}, incident (the last drop: tick, cause, record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})

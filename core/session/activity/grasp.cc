@@ -13,7 +13,7 @@ Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) 
   std::snprintf(refusal_, sizeof(refusal_), "the object begins %.1f mm inside the link %.60s",
                 1e3 * overlap.depth, context.now.hand.links[overlap.link].name.c_str());
   return {Verdict::Kind::kBadState, refusal_,
-          "another object, or object_pose in the hand's scenario"};
+          "rotation_deg in the object's .toml, object_pose in the hand's, or another object"};
 }
 
 void GraspActivity::Start(const Command&, const ActivityContext& context) {

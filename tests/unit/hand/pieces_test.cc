@@ -146,6 +146,27 @@ TEST_F(PiecesTest, InsideIsInsideAnyPiece) {
   EXPECT_FALSE(inside(0.041, 0, 0));
 }
 
+TEST_F(PiecesTest, AnObjectIsTurnedBeforeItIsPresented) {
+  const std::string shapes = Collisions({{"xyz=\"0 0.01 0\"", "<box size=\"0.06 0.02 0.04\"/>"},
+                                         {"xyz=\"0 -0.01 0\"", "<box size=\"0.03 0.02 0.04\"/>"}});
+  const ObjectModel straight = Of(shapes, shape_);
+  Write("objects/thing.toml",
+        "rotation_deg = [0, 0, 90]\nfriction = 0.5\ninertia_from_shape = true\n");
+  ObjectFacts facts;
+  const ObjectModel turned = LoadObjectFile(root_ / "objects/thing.urdf", {}, nullptr, &facts);
+  EXPECT_EQ(turned.friction, 0.5);
+  EXPECT_LT((Extent(straight) - Vector3d(0.06, 0.04, 0.04)).norm(), 1e-12);
+  EXPECT_LT((Extent(turned) - Vector3d(0.04, 0.06, 0.04)).norm(), 1e-12);
+  // x becomes y, y becomes -x; the centre of mass is told in the file's axes.
+  EXPECT_LT(
+      (turned.vertices_O[0] - Vector3d(-straight.vertices_O[0].y(), straight.vertices_O[0].x(),
+                                       straight.vertices_O[0].z()))
+          .norm(),
+      1e-12);
+  EXPECT_NEAR(turned.I_OCom(1, 1), straight.I_OCom(0, 0), 1e-15);
+  EXPECT_LT((facts.p_LCom - Vector3d(0, 0.01 / 3, 0)).norm(), 1e-12);
+}
+
 TEST_F(PiecesTest, EveryPieceIsCheckedAndAllErrorsComeAtOnce) {
   Write("objects/open.obj", Replaced(kTetrahedron, "f 2 3 4\n", "f 2 4 3\n"));
   try {
