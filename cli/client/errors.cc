@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/files/names.h"
+
 namespace regrasp::cli {
 
 std::string JsonQuote(const std::string& text) {
@@ -23,8 +25,8 @@ void PrintError(const CliError& error, bool json, bool color) {
     text += '\n';
   } else {
     text = fmt::format("{}regrasp:{} {}\n", color ? "\x1b[31m" : "", color ? "\x1b[0m" : "",
-                       error.what());
-    if (!error.hint.empty()) text += fmt::format("  try: {}\n", error.hint);
+                       ShownText(error.what()));
+    if (!error.hint.empty()) text += fmt::format("  try: {}\n", ShownText(error.hint));
   }
   std::fwrite(text.data(), 1, text.size(), stderr);
 }

@@ -208,6 +208,8 @@ ExitCode StartJob(Context& context, const Invocation& invocation) {
   const bool wait = invocation.Has("wait");
   const Json answer = context.Call(invocation);
   const std::int64_t id = answer.at("job");
+  for (const Json& difference : answer.value("differences", Json::array()))
+    fmt::print(stderr, "regrasp: note: {}\n", Plain(difference));
   if (!wait) {
     context.Print(answer, [&] {
       context.out().Line(fmt::format("job {}: {} started    (regrasp job wait {})", id,

@@ -67,13 +67,14 @@ void AddMessage(const std::string& path, const McapMessage& message, Run* run) {
   run->topics[std::string(message.topic)].rows.push_back(std::move(json));
 }
 
-Run Read(const std::string& path) {
+Run Read(const std::string& path, const OnRun& on_run) {
   Run run;
   std::string topic;
   try {
     run.summary = ReadMcap(path, [&](const McapMessage& message) {
       topic = message.topic;
       AddMessage(path, message, &run);
+      if (topic == "run") on_run(message.data);
     });
   } catch (const nlohmann::json::exception& e) {
     throw std::runtime_error(fmt::format("{}: a message of topic '{}' is not as expected: {}", path,
@@ -246,12 +247,13 @@ void WriteNpz(const Run& run, const std::string& out) {
   npz.Finish();
 }
 
-McapSummary WriteMcap(const std::string& path, const std::string& out) {
+McapSummary WriteMcap(const std::string& path, const std::string& out, const OnRun& on_run) {
   McapWriter writer(out);
   // Channels stand before the first message: two passes.
   std::map<std::string, std::string> schemas;
   std::vector<std::string> order;
   ReadMcap(path, [&](const McapMessage& message) {
+    if (message.topic == "run") on_run(message.data);
     if (!schemas.emplace(message.topic, message.schema).second) return;
     CheckFileName(path, "topic", message.topic);
     order.emplace_back(message.topic);
@@ -273,14 +275,16 @@ ExportResult Result(McapSummary summary, std::uint64_t files) {
 
 }  // namespace
 
-ExportResult ExportRun(const std::string& path, const std::string& format, const std::string& out) {
+ExportResult ExportRun(const std::string& path, const std::string& format, const std::string& out,
+                       const OnRun& on_run) {
+  RemoveAbandonedDrafts(fs::path(out).parent_path());
   Draft draft(out, Draft::Existing::kKeep,
               format == "csv" ? Draft::Kind::kDirectory : Draft::Kind::kFile);
   ExportResult result;
   if (format == "mcap") {
-    result = Result(WriteMcap(path, draft.path()), 1);
+    result = Result(WriteMcap(path, draft.path(), on_run), 1);
   } else {
-    Run run = Read(path);
+    Run run = Read(path, on_run);
     if (format == "npz") WriteNpz(run, draft.path());
     if (format == "csv")
       for (const auto& [name, topic] : run.topics)

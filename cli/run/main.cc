@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "cli/run/replay_run.h"
 #include "cli/run/video.h"
 #include "core/files/names.h"
+#include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
 #include "core/protocol/errors.h"
 
@@ -37,16 +39,33 @@ void Print(const Command& command, const Json& result, const std::string& text) 
   if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
 }
 
-/// First of all: what the run was made with, where that is not what this program has.
-Json TellDifferences(const RunFile& file) {
-  const Segment& segment = file.segments.back();
-  Json differences = Json::array();
-  for (const std::string& difference :
-       Differences(segment.journal->config, segment.build, ModelSearchPath(""))) {
-    differences.push_back(difference);
+/// First of all: what a run was made with, where that is not what this program has. Each once.
+void TellDifferences(const SessionConfig& config, const std::string& build, Json* told) {
+  for (const std::string& difference : Differences(config, build, ModelSearchPath(""))) {
+    if (std::find(told->begin(), told->end(), difference) != told->end()) continue;
+    told->push_back(difference);
     fmt::print(stderr, "regrasp: note: {}\n", difference);
   }
-  return differences;
+}
+
+Json TellDifferences(const RunFile& file) {
+  Json told = Json::array();
+  for (const Segment& segment : file.segments)
+    TellDifferences(segment.journal->config, segment.build, &told);
+  return told;
+}
+
+/// Of a run that is only exported, a configuration that cannot be used is no reason to stop.
+void TellDifferences(std::string_view config, Json* told) {
+  try {
+    const ConfigRead run = ParseConfig(config);
+    TellDifferences(run.config, run.build, told);
+  } catch (const JournalError& e) {
+    const std::string difference =
+        fmt::format("the configuration of the run cannot be used here: {}", e.what());
+    told->push_back(difference);
+    fmt::print(stderr, "regrasp: note: {}\n", difference);
+  }
 }
 
 Json LossesJson(const std::vector<McapLoss>& lost) {
@@ -120,13 +139,17 @@ ExitCode ReplayCommand(const Command& command) {
 ExitCode ExportCommand(const Command& command) {
   const std::string& format = command.options.at("--format");
   const std::string& out = command.options.at("--output");
-  const ExportResult result = ExportRun(command.file, format, out);
+  Json differences = Json::array();
+  const ExportResult result = ExportRun(command.file, format, out, [&](std::string_view config) {
+    TellDifferences(config, &differences);
+  });
   Print(command,
         {{"path", out},
          {"format", format},
          {"messages", result.messages},
          {"files", result.files},
          {"complete", result.complete},
+         {"differences", differences},
          {"lost", LossesJson(result.lost)}},
         fmt::format("{}: {} messages{}", out, result.messages,
                     format == "csv" ? fmt::format(" in {} files", result.files) : "") +

@@ -40,6 +40,7 @@ struct Scratch {
 VideoResult WriteVideo(const RunFile& file, const VideoOptions& options, const std::string& out) {
   if (fs::path(out).extension() != ".mp4")
     throw std::runtime_error(out + ": a film's name ends in .mp4");
+  RemoveAbandonedDrafts(fs::path(out).parent_path());
   Draft draft(out, Draft::Existing::kKeep);
   const Segment& segment = file.segments.back();
   const SessionConfig& config = segment.journal->config;

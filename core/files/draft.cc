@@ -7,6 +7,8 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -110,6 +112,21 @@ void WriteWhole(const std::string& target, std::string_view text, Draft::Existin
   }
   if (::close(fd) != 0) Fail("write", target);
   draft.Commit(durable);
+}
+
+void RemoveAbandonedDrafts(const std::string& directory) {
+  std::error_code error;
+  fs::directory_iterator entries(directory.empty() ? "." : directory, error);
+  for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    const std::string name = entries->path().filename().string();
+    constexpr std::string_view kBegin = ".draft-";
+    if (!name.starts_with(kBegin)) continue;
+    const pid_t maker = std::atoi(name.c_str() + kBegin.size());
+    const bool alive =
+        maker > 0 && maker != ::getpid() && (::kill(maker, 0) == 0 || errno == EPERM);
+    std::error_code ignored;
+    if (!alive) fs::remove_all(entries->path(), ignored);
+  }
 }
 
 }  // namespace regrasp

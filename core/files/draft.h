@@ -39,4 +39,8 @@ class Draft {
 void WriteWhole(const std::string& target, std::string_view text, Draft::Existing existing,
                 bool durable = true);
 
+/// Removes what writers that have been killed left beside the files of a directory. Never throws;
+/// what cannot be removed stays.
+void RemoveAbandonedDrafts(const std::string& directory);
+
 }  // namespace regrasp

@@ -37,6 +37,11 @@ bool Directs(std::uint32_t c) {
          (c >= 0x2066 && c <= 0x2069) || c == 0xfeff;
 }
 
+void AppendEscaped(unsigned char byte, std::string* text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  *text += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+}
+
 }  // namespace
 
 bool IsUtf8(std::string_view text) {
@@ -47,15 +52,28 @@ bool IsUtf8(std::string_view text) {
 
 std::string Shown(std::string_view name) {
   constexpr std::size_t kMost = 64;
-  constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text;
-  for (const unsigned char c : name.substr(0, kMost)) {
+  for (const unsigned char c : name.substr(0, kMost))
     if (c >= 0x20 && c < 0x7f)
       text += static_cast<char>(c);
     else
-      text += {'\\', 'x', kDigits[c >> 4], kDigits[c & 15]};
-  }
+      AppendEscaped(c, &text);
   return name.size() > kMost ? text + "..." : text;
+}
+
+std::string ShownText(std::string_view text) {
+  std::string shown;
+  while (!text.empty()) {
+    const std::string_view before = text;
+    const auto point = TakeCodePoint(&text);
+    if (!point) text = before.substr(1);
+    const std::string_view taken = before.substr(0, before.size() - text.size());
+    if (point && !Controls(*point) && !Directs(*point))
+      shown += taken;
+    else
+      for (const unsigned char c : taken) AppendEscaped(c, &shown);
+  }
+  return shown;
 }
 
 std::string NameFault(std::string_view name) {

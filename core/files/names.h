@@ -20,6 +20,10 @@ std::string FileNameFault(std::string_view name);
 /// not ASCII as "\x1b".
 std::string Shown(std::string_view name);
 
+/// A line of text as it may be shown to people: control characters, characters that change the
+/// direction of text and what is no UTF-8 as "\x1b".
+std::string ShownText(std::string_view text);
+
 /// True when the text is UTF-8 (of the shortest form, without surrogates).
 bool IsUtf8(std::string_view text);
 

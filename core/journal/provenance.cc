@@ -37,11 +37,17 @@ void CompareModels(const LoadedScenario& recorded,
 
 std::vector<std::string> Differences(const SessionConfig& config, std::string_view build,
                                      const std::vector<std::filesystem::path>& search_path) {
+  std::vector<std::string> differences = BuildAndParameterDifferences(config, build);
+  CompareModels(config.model, search_path, &differences);
+  return differences;
+}
+
+std::vector<std::string> BuildAndParameterDifferences(const SessionConfig& config,
+                                                      std::string_view build) {
   std::vector<std::string> differences;
   if (build != BuildIdentity())
     differences.push_back("the build: recorded by " + Shown(build) + ", this is " +
                           std::string(BuildIdentity()));
-  CompareModels(config.model, search_path, &differences);
   const Parameters defaults = DefaultParameters(config.model);
   for (const ParameterInfo& info : ParameterTable()) {
     const Vector3d value = info.get(config.parameters), usual = info.get(defaults);

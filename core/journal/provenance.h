@@ -17,4 +17,8 @@ namespace regrasp {
 std::vector<std::string> Differences(const SessionConfig& config, std::string_view build,
                                      const std::vector<std::filesystem::path>& search_path);
 
+/// The same but for the models, which cost reading files: the build and the parameters.
+std::vector<std::string> BuildAndParameterDifferences(const SessionConfig& config,
+                                                      std::string_view build);
+
 }  // namespace regrasp

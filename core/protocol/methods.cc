@@ -433,7 +433,8 @@ constexpr std::array kMethods = {
                "go on from a checkpoint: identically, or with another seed", kCheckpointRestore,
                true,
                "job; continues: the job that goes on after it, or null; from: state or commands; "
-               "tick, state_hash"},
+               "tick, state_hash; differences: the build that saved it, where that is another, and "
+               "parameters that are not the defaults, a sentence each"},
     MethodSpec{"checkpoint.save", "checkpoint save", "keep this moment, to go on from it later",
                kCheckpointSave, false, "name, tick, time_s, state, state_hash, commands, path"},
     MethodSpec{

@@ -1,12 +1,8 @@
 #include "daemon/output/files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstdlib>
 
 #include "core/files/draft.h"
 #include "core/files/names.h"
@@ -79,20 +75,6 @@ std::filesystem::path FreeFile(const std::filesystem::path& directory, const std
   for (int i = 2; std::filesystem::exists(std::filesystem::symlink_status(file, ignored)); ++i)
     file = directory / fmt::format("{}-{}{}", name, i, suffix);
   return file;
-}
-
-void RemoveAbandonedDrafts(const std::filesystem::path& directory) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
-    const std::string name = entry.path().filename().string();
-    constexpr std::string_view kBegin = ".draft-";
-    if (!name.starts_with(kBegin)) continue;
-    const pid_t maker = std::atoi(name.c_str() + kBegin.size());
-    const bool alive =
-        maker > 0 && maker != ::getpid() && (::kill(maker, 0) == 0 || errno == EPERM);
-    std::error_code ignored;
-    if (!alive) std::filesystem::remove_all(entry.path(), ignored);
-  }
 }
 
 void RemoveOldest(const std::vector<std::filesystem::path>& files, std::size_t keep,

@@ -33,8 +33,6 @@ std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& director
 /// The first of NAME.suffix, NAME-2.suffix ... that is not there yet.
 std::filesystem::path FreeFile(const std::filesystem::path& directory, const std::string& name,
                                std::string_view suffix);
-/// Removes what writers left behind that were killed.
-void RemoveAbandonedDrafts(const std::filesystem::path& directory);
 /// Removes the oldest until `keep` are left; calls `removed` for each.
 void RemoveOldest(const std::vector<std::filesystem::path>& files, std::size_t keep,
                   const std::function<void(const std::filesystem::path&)>& removed = {});

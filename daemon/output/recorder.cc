@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <new>
 
 #include "core/journal/journal_text.h"
 
@@ -55,10 +56,15 @@ void Recorder::Add(const Published& published) {
   Push(Sample{std::make_unique<const Published>(published), all});
 }
 
+/// What cannot be kept until it is written would be missing in the file, which ends therefore.
 void Recorder::Push(Item item) {
   {
     const std::lock_guard lock(mutex_);
-    items_.push_back(std::move(item));
+    try {
+      items_.push_back(std::move(item));
+    } catch (const std::bad_alloc&) {
+      numbers_.failure = "no memory";
+    }
   }
   wake_.notify_one();
 }

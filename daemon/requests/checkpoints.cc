@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <optional>
 
 #include "core/files/names.h"
 #include "core/journal/journal_text.h"
+#include "core/journal/provenance.h"
 #include "core/journal/saved_state.h"
 #include "daemon/output/files.h"
 #include "daemon/requests/handlers.h"
@@ -61,43 +63,117 @@ Json HeadJson(const Checkpoint& checkpoint, double dt) {
           {"same_build", checkpoint.build == BuildIdentity()}};
 }
 
-std::shared_ptr<const Checkpoint> Read(Service& service, const fs::path& path,
-                                       const std::string& name) {
-  const auto refuse = [](ErrorCode code, std::string message, std::string hint) {
-    throw RpcException(RpcError{code, std::move(message), std::move(hint), "name", {}});
-  };
-  if (!fs::exists(path)) {
+/// What a restore needs of a file; made by the worker thread.
+struct Restored {
+  std::shared_ptr<const Checkpoint> checkpoint;
+  /// In the checkpoint's state; null where only executing its commands again leads there: another
+  /// build saved it, the file was changed, or that was asked for.
+  std::unique_ptr<Session> session;
+  std::vector<std::string> differences;
+  std::optional<RpcError> error;
+};
+
+struct RestoreRequest {
+  fs::path path;
+  std::string name;
+  const HandModel* hand = nullptr;  ///< the daemon's, which never changes
+  double dt = 0;                    ///< the daemon's [s]
+  bool reexecute = false, reseed = false;
+  std::uint64_t seed = 0;
+};
+
+RpcException Refusal(ErrorCode code, std::string message, std::string hint) {
+  return RpcException(RpcError{code, std::move(message), std::move(hint), "name", {}});
+}
+
+std::shared_ptr<const Checkpoint> Read(const RestoreRequest& request) {
+  if (!fs::exists(request.path)) {
     std::vector<std::string> names;
-    for (const Checkpoint& head : Heads(service.config().output_dir)) names.push_back(head.name);
-    std::string hint = DidYouMean(name, names);
+    for (const Checkpoint& head : Heads(request.path.parent_path())) names.push_back(head.name);
+    std::string hint = DidYouMean(request.name, names);
     if (hint.empty()) hint = "regrasp checkpoint list";
-    refuse(ErrorCode::kNotFound, fmt::format("no checkpoint '{}'", name), std::move(hint));
+    throw Refusal(ErrorCode::kNotFound, fmt::format("no checkpoint '{}'", request.name),
+                  std::move(hint));
   }
   std::shared_ptr<const Checkpoint> checkpoint;
   try {
-    checkpoint = std::make_shared<const Checkpoint>(ParseCheckpoint(ReadFile(path)));
+    checkpoint = std::make_shared<const Checkpoint>(ParseCheckpoint(ReadFile(request.path)));
   } catch (const std::exception& e) {
-    refuse(ErrorCode::kIo, fmt::format("{}: {}", path.string(), e.what()),
-           "regrasp checkpoint save NAME");
+    throw Refusal(ErrorCode::kIo, fmt::format("{}: {}", request.path.string(), e.what()),
+                  "regrasp checkpoint save NAME");
   }
   const SessionConfig& config = checkpoint->journal.config;
-  if (HandText(config.model.hand) != HandText(service.hand()) || config.world.dt != service.dt())
-    refuse(ErrorCode::kBadState,
-           fmt::format("checkpoint '{}' is of another hand ({}) or time step ({} s)", name,
-                       config.model.hand.name, config.world.dt),
-           "start regraspd with the hand the checkpoint was saved with");
+  if (HandText(config.model.hand) != HandText(*request.hand) || config.world.dt != request.dt)
+    throw Refusal(ErrorCode::kBadState,
+                  fmt::format("checkpoint '{}' is of another hand ({}) or time step ({} s)",
+                              request.name, config.model.hand.name, config.world.dt),
+                  "start regraspd with the hand the checkpoint was saved with");
   return checkpoint;
 }
 
-/// A session in the checkpoint's state, or null where only executing its commands again leads
-/// there: another build saved it, or the file was changed.
 std::unique_ptr<Session> Load(const Checkpoint& checkpoint) {
   if (checkpoint.saved_state.empty() || checkpoint.build != BuildIdentity()) return nullptr;
   auto session = std::make_unique<Session>(checkpoint.journal.config);
-  LoadState(FromBase64(checkpoint.saved_state), session.get());
-  if (session->StateHash() != checkpoint.state_hash || session->tick() != checkpoint.tick)
-    throw StateError("saved state: of another moment");
+  try {
+    LoadState(FromBase64(checkpoint.saved_state), session.get());
+    if (session->StateHash() != checkpoint.state_hash || session->tick() != checkpoint.tick)
+      throw StateError("saved state: of another moment");
+  } catch (const std::exception& e) {
+    throw Refusal(ErrorCode::kIo, fmt::format("checkpoint '{}': {}", checkpoint.name, e.what()),
+                  fmt::format("regrasp checkpoint restore {} --reexecute", checkpoint.name));
+  }
   return session;
+}
+
+Restored ReadAndLoad(const RestoreRequest& request) {
+  Restored restored;
+  try {
+    restored.checkpoint = Read(request);
+    restored.differences = BuildAndParameterDifferences(restored.checkpoint->journal.config,
+                                                        restored.checkpoint->build);
+    if (!request.reexecute) restored.session = Load(*restored.checkpoint);
+  } catch (const RpcException& e) {
+    restored.error = e.error();
+  } catch (const std::exception& e) {
+    restored.error = Refusal(ErrorCode::kIo, e.what(), "regrasp checkpoint list").error();
+  }
+  return restored;
+}
+
+/// Hands what was read to the control thread; answers when that has taken it.
+void BeginRestore(Service& service, const RestoreRequest& wanted, Restored restored,
+                  const Done& done) {
+  service.CheckNotRestoring();
+  const std::shared_ptr<const Checkpoint> checkpoint = restored.checkpoint;
+  ControlRequest request;
+  request.kind = ControlRequest::Kind::kRestore;
+  request.checkpoint = checkpoint;
+  request.session = std::move(restored.session);
+  const bool from_state = request.session != nullptr;
+  request.command.type = CommandType::kBranch;
+  request.command.reseed = wanted.reseed;
+  request.command.seed = wanted.seed;
+  // The job that goes on comes first: while it waits, the restore is the newest unfinished job.
+  if (checkpoint->job.id != 0) request.command.job = service.jobs().Add(checkpoint->job.method).id;
+  const std::int64_t continues = request.command.job;
+  const std::int64_t id = service.jobs().Add(JobMethod::kRestore).id;
+  request.job = id;
+  try {
+    const std::uint64_t number = service.Post(std::move(request));
+    service.AfterTaken(number,
+                       [done, answer = Json{{"job", id},
+                                            {"continues", continues ? Json(continues) : Json()},
+                                            {"tick", checkpoint->tick},
+                                            {"state_hash", HashText(checkpoint->state_hash)},
+                                            {"from", from_state ? "state" : "commands"},
+                                            {"differences", std::move(restored.differences)}}] {
+                         done(answer, nullptr);
+                       });
+  } catch (...) {
+    service.jobs().Withdraw(id);
+    if (continues) service.jobs().Withdraw(continues);
+    throw;
+  }
 }
 
 }  // namespace
@@ -161,44 +237,32 @@ Outcome CheckpointList(Service& service, const Params&, Client&) {
   });
 }
 
+/// The file is read, and the state loaded, by the worker thread: a long run takes seconds.
 Outcome CheckpointRestore(Service& service, const Params& params, Client&) {
   service.CheckNotRestoring();
-  const auto checkpoint = Read(service, PathOf(service, params), params.String("name"));
-  ControlRequest request;
-  request.kind = ControlRequest::Kind::kRestore;
-  request.checkpoint = checkpoint;
-  try {
-    if (!params.Bool("reexecute", false)) request.session = Load(*checkpoint);
-  } catch (const std::exception& e) {
-    throw RpcException(
-        RpcError{ErrorCode::kIo,
-                 fmt::format("checkpoint '{}': {}", checkpoint->name, e.what()),
-                 fmt::format("regrasp checkpoint restore {} --reexecute", checkpoint->name),
-                 "name",
-                 {}});
-  }
-  const bool from_state = request.session != nullptr;
-  request.command.type = CommandType::kBranch;
-  request.command.reseed = params.Has("seed");
-  request.command.seed = static_cast<std::uint64_t>(params.Integer("seed", 0));
-  // The job that goes on comes first: while it waits, the restore is the newest unfinished job.
-  if (checkpoint->job.id != 0) request.command.job = service.jobs().Add(checkpoint->job.method).id;
-  const std::int64_t continues = request.command.job;
-  const std::int64_t id = service.jobs().Add(JobMethod::kRestore).id;
-  request.job = id;
-  try {
-    const std::uint64_t barrier = service.Post(std::move(request));
-    return {.result = {{"job", id},
-                       {"continues", continues ? Json(continues) : Json()},
-                       {"tick", checkpoint->tick},
-                       {"state_hash", HashText(checkpoint->state_hash)},
-                       {"from", from_state ? "state" : "commands"}},
-            .barrier = barrier};
-  } catch (...) {
-    service.jobs().Withdraw(id);
-    if (continues) service.jobs().Withdraw(continues);
-    throw;
-  }
+  RestoreRequest request{.path = PathOf(service, params),
+                         .name = params.String("name"),
+                         .hand = &service.hand(),
+                         .dt = service.dt(),
+                         .reexecute = params.Bool("reexecute", false),
+                         .reseed = params.Has("seed"),
+                         .seed = static_cast<std::uint64_t>(params.Integer("seed", 0))};
+  Outcome outcome;
+  outcome.begin = [&service, request = std::move(request)](Done done) {
+    const auto restored = std::make_shared<Restored>();
+    const auto read = [restored, request] { *restored = ReadAndLoad(request); };
+    const auto finish = [&service, restored, request, done] {
+      if (restored->error) return done({}, &*restored->error);
+      try {
+        BeginRestore(service, request, std::move(*restored), done);
+      } catch (const RpcException& e) {
+        done({}, &e.error());
+      }
+    };
+    if (!service.host().Background(read, finish))
+      throw RpcException(ErrorCode::kBusy, "too much is waiting for the disk", "try again later");
+  };
+  return outcome;
 }
 
 }  // namespace regrasp::handlers

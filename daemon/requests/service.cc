@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/files/draft.h"
 #include "core/hand/kinematics.h"
 #include "core/world/start_overlap.h"
 #include "daemon/output/files.h"
@@ -81,15 +82,15 @@ Outcome Service::Call(const std::string& method, const JsonIn& params, Client* c
 std::vector<Sample> Service::Drain() {
   // The control thread pushes a frame before the events and jobs it shows, so those are taken
   // first.
-  std::vector<JobRecord> ended;
-  for (JobRecord job; control_.PopJob(&job);) ended.push_back(job);
+  const auto room_for_another = [this] { return ended_.reserve(ended_.size() + 1), true; };
+  for (JobRecord job; room_for_another() && control_.PopJob(&job);) ended_.push_back(job);
   std::vector<PublishedEvent> news;
   for (PublishedEvent event; control_.PopEvent(&event);) news.push_back(event);
 
   // Journal news go before the frames that show them.
   std::vector<Published> frames;
   for (Published published; control_.PopFrame(&published);) frames.push_back(published);
-  for (JournalNews item; control_.PopNews(&item);) TakeIn(item);
+  TakeInNews();
 
   const bool fresh = !frames.empty();
   for (const Published& published : frames) {
@@ -125,7 +126,8 @@ std::vector<Sample> Service::Drain() {
     if (newest_.frame.job.id != 0) jobs_.Update(newest_.frame.job);
     if (newest_.step.id != 0) jobs_.Update(newest_.step);
   }
-  for (const JobRecord& job : ended) jobs_.Update(job);
+  for (const JobRecord& job : ended_) jobs_.Update(job);
+  ended_.clear();
   LookAfterRecorder();
   return std::exchange(news_, {});
 }
@@ -161,6 +163,13 @@ void Service::LookAfterRecorder() {
   if (!host_->Background([old] { old->Finish(); }, [] {})) old->Finish();
 }
 
+void Service::TakeInNews() {
+  for (JournalNews item; untaken_ || control_.PopNews(&item); untaken_.reset()) {
+    if (!untaken_) untaken_ = std::move(item);
+    TakeIn(*untaken_);
+  }
+}
+
 void Service::TakeIn(const JournalNews& news) {
   switch (news.kind) {
     case JournalNews::Kind::kBegin:
@@ -188,6 +197,15 @@ void Service::TakeIn(const JournalNews& news) {
 void Service::Mark(std::function<void(const JournalNews&)> told) {
   CheckNotRestoring();
   marks_.emplace(Post({.kind = ControlRequest::Kind::kMark}), std::move(told));
+}
+
+void Service::AfterTaken(std::uint64_t request, std::function<void()> then) {
+  after_taken_.emplace(request, std::move(then));
+}
+
+void Service::OnAcknowledged(std::uint64_t request) {
+  while (!after_taken_.empty() && after_taken_.begin()->first <= request)
+    after_taken_.extract(after_taken_.begin()).mapped()();
 }
 
 void Service::RecordIncident(const Event& event) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -103,6 +104,7 @@ class Service {
   /// Takes in what the control loop has published: newest frame, history, jobs (whose waiters are
   /// called), events. Returns the new events, as subscribers get them. Call after
   /// ControlLoop::output() was notified.
+  /// Should it throw (no memory is left), no job and no command has been lost: call it again.
   std::vector<Sample> Drain();
 
   /// The last drop or fault since the start; null when there was none.
@@ -145,6 +147,11 @@ class Service {
   /// Asks for the tick and the state hash of this moment, after every command accepted before;
   /// `told` is called on the I/O thread when journal() is complete up to there.
   void Mark(std::function<void(const JournalNews&)> told);
+  /// Calls `then` on the I/O thread once the control thread has taken `request` and the frames that
+  /// show it are here.
+  void AfterTaken(std::uint64_t request, std::function<void()> then);
+  /// What waits for requests up to this one happens. Call after Drain().
+  void OnAcknowledged(std::uint64_t request);
 
   /// Values as accepted, which the simulation may not have seen yet (it has after its next tick).
   struct Accepted {
@@ -193,6 +200,7 @@ class Service {
   void OrderForJob(const JobRecord& job, std::vector<Command>* commands) const;
   /// Throws busy where so many commands cannot be taken, now or of one run.
   void CheckMayPost(std::size_t commands, std::size_t reserve) const;
+  void TakeInNews();
   /// Tells of a recording that has ended by itself.
   void LookAfterRecorder();
   /// An event of the daemon's own.
@@ -206,9 +214,12 @@ class Service {
   Host* host_;
   ControlLoop control_;
   JobTable jobs_;
+  std::vector<JobRecord> ended_;        ///< taken from the control thread, not yet taken in
+  std::optional<JournalNews> untaken_;  ///< the same
   Journal journal_;
   std::uint64_t run_ = 0;
   std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;
+  std::multimap<std::uint64_t, std::function<void()>> after_taken_;
   History history_;
   std::deque<std::string> events_;
   std::vector<Sample> news_;  ///< events since the last Drain()

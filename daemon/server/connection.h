@@ -54,6 +54,7 @@ class Connection : public Client, public std::enable_shared_from_this<Connection
   void CheckHealth(std::chrono::steady_clock::time_point now);
   /// Closes as soon as everything is written.
   void CloseWhenFlushed();
+  bool closed() const { return closed_; }
 
   std::int64_t Subscribe(const std::string& topic, double rate_hz) override;
   Json Unsubscribe(std::int64_t sub) override;

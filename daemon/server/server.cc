@@ -9,6 +9,7 @@
 #include <asio/post.hpp>
 #include <csignal>
 #include <system_error>
+#include <thread>
 
 #include "daemon/wire/rpc.h"
 
@@ -41,30 +42,45 @@ Server::~Server() {
 }
 
 void Server::Run(bool signals, std::function<void()> reload) {
-  if (signals) {
+  reload_ = std::move(reload);
+  if (signals)
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) signals_.add(signal);
-    WatchSignals(reload);
-  }
-  WatchControl();
-  WatchHealth();
-  Accept();
+  watching_.signals = !signals;
+  watching_.watchdog = !manager_.watchdog();
   manager_.Tell("READY=1\nSTATUS=" + StatusLine());
-  FeedWatchdog();
   // A handler that throws past its guard has lost what it was about; the others go on.
-  while (!io_.stopped()) Guard("a step of the server", [this] { io_.run(); });
+  while (!io_.stopped()) {
+    Guard("a step of the server", [this] {
+      Watch();
+      io_.run();
+    });
+    if (io_.stopped()) break;
+    // Memory is short: not again at once, and what was cut short is taken up again.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    service_.control().output().Notify();
+  }
   // Connections hold their own sockets and timers alive through handlers: let go of all before io_
   // goes.
   for (const auto& connection : Connections()) connection->CloseWhenFlushed();
   connections_.clear();
 }
 
+void Server::Watch() {
+  if (!watching_.signals) WatchSignals();
+  if (!watching_.control) WatchControl();
+  if (!watching_.health) WatchHealth();
+  if (!watching_.clients && !stopping_) Accept();
+  if (!watching_.watchdog && !stopping_) FeedWatchdog();
+}
+
 void Server::Stop() {
   asio::post(io_, [this] { Shutdown(); });
 }
 
-void Server::WatchSignals(const std::function<void()>& reload) {
+void Server::WatchSignals() {
   const bool on_terminal = ::isatty(STDERR_FILENO) == 1;
-  signals_.async_wait([this, reload, on_terminal](std::error_code error, int signal) {
+  signals_.async_wait([this, on_terminal](std::error_code error, int signal) {
+    watching_.signals = false;
     if (error) return;
     const bool hung_up = on_terminal && ::isatty(STDERR_FILENO) == 0;
     if (signal != SIGHUP || hung_up) {
@@ -72,16 +88,16 @@ void Server::WatchSignals(const std::function<void()>& reload) {
       return Shutdown();
     }
     manager_.Tell("RELOADING=1");
-    if (reload) reload();
+    if (reload_) reload_();
     manager_.Tell("READY=1");
-    WatchSignals(reload);
+    WatchSignals();
   });
+  watching_.signals = true;
 }
 
 /// The watchdog is fed only when the control loop has moved since the last time: by a tick, or,
 /// while the clock is stopped on purpose, by looking around.
 void Server::FeedWatchdog() {
-  if (!manager_.watchdog()) return;
   ControlLoop& control = service_.control();
   if (const std::uint64_t pulse = control.pulse(); pulse != pulse_) {
     pulse_ = pulse;
@@ -92,8 +108,10 @@ void Server::FeedWatchdog() {
   control.Nudge();
   watchdog_.expires_after(*manager_.watchdog() / 4);
   watchdog_.async_wait([this](std::error_code error) {
+    watching_.watchdog = false;
     if (!error && !stopping_) FeedWatchdog();
   });
+  watching_.watchdog = true;
 }
 
 std::string Server::StatusLine() const {
@@ -118,6 +136,7 @@ std::string Server::Request(const std::string& method, const JsonIn& params) {
 
 void Server::Accept() {
   acceptor_.async_accept([this](std::error_code error, Connection::Socket socket) {
+    watching_.clients = false;
     if (stopping_) return;
     if (!error) {
       accept_failing_ = false;
@@ -129,9 +148,12 @@ void Server::Accept() {
       spdlog::warn("cannot accept clients: {}", error.message());
     accept_retry_.expires_after(std::chrono::milliseconds(100));
     accept_retry_.async_wait([this](std::error_code cancelled) {
+      watching_.clients = false;
       if (!cancelled && !stopping_) Accept();
     });
+    watching_.clients = true;
   });
+  watching_.clients = true;
 }
 
 void Server::Admit(Connection::Socket socket) {
@@ -155,13 +177,15 @@ void Server::Admit(Connection::Socket socket) {
   connection->Start();
 }
 
-void Server::Closed(Connection* connection, const std::string& why) {
+void Server::Closed(Connection*, const std::string& why) {
   if (why.starts_with("evicted")) spdlog::warn("client {}", why);
   // The caller may be iterating over, or running inside, this connection.
-  asio::post(io_, [this, connection] {
-    connections_.erase(connection);
-    if (stopping_ && connections_.empty()) Finish();
-  });
+  asio::post(io_, [this] { DropClosed(); });
+}
+
+void Server::DropClosed() {
+  std::erase_if(connections_, [](const auto& entry) { return entry.second->closed(); });
+  if (stopping_ && connections_.empty()) Finish();
 }
 
 std::vector<std::shared_ptr<Connection>> Server::Connections() const {
@@ -182,10 +206,12 @@ void Server::Guard(const char* what, const std::function<void()>& step) {
 void Server::WatchControl() {
   control_output_.async_wait(asio::posix::stream_descriptor::wait_read,
                              [this](std::error_code error) {
+                               watching_.control = false;
                                if (error) return;
-                               Guard("news of the simulation", [this] { TakeFromControl(); });
+                               TakeFromControl();
                                WatchControl();
                              });
+  watching_.control = true;
 }
 
 void Server::TakeFromControl() {
@@ -195,6 +221,7 @@ void Server::TakeFromControl() {
   const std::uint64_t acknowledged = control.acknowledged();
   const std::vector<Sample> events = service_.Drain();
   acknowledged_ = acknowledged;
+  service_.OnAcknowledged(acknowledged);
   const auto connections = Connections();
   for (const auto& connection : connections) connection->OnAcknowledged();
   for (const Sample& event : events)
@@ -205,13 +232,16 @@ void Server::WatchHealth() {
   health_.expires_after(
       std::min<std::chrono::milliseconds>(std::chrono::seconds(1), limits_.max_stall / 4));
   health_.async_wait([this](std::error_code error) {
+    watching_.health = false;
     if (error) return;
     Guard("looking after the clients", [this] {
       const auto now = std::chrono::steady_clock::now();
       for (const auto& connection : Connections()) connection->CheckHealth(now);
+      DropClosed();  // whose end could not be told
     });
     WatchHealth();
   });
+  watching_.health = true;
 }
 
 std::uint64_t Server::After(double seconds, std::function<void()> action) {

@@ -53,12 +53,15 @@ class Server final : public ConnectionOwner, public Host {
   void Shutdown() override;
   bool activated() const override { return listener_->inherited(); }
 
+  /// Begins whatever is not being waited for: everything at first, then what an exception ended.
+  void Watch();
   void Accept();
   void Admit(Connection::Socket socket);
+  void DropClosed();
   void WatchControl();
   void TakeFromControl();
   void WatchHealth();
-  void WatchSignals(const std::function<void()>& reload);
+  void WatchSignals();
   void FeedWatchdog();
   std::string StatusLine() const;
   void Finish();
@@ -74,6 +77,11 @@ class Server final : public ConnectionOwner, public Host {
   asio::posix::stream_descriptor control_output_{io_};
   asio::steady_timer accept_retry_{io_}, health_{io_}, last_moment_{io_}, watchdog_{io_};
   asio::signal_set signals_{io_};
+  std::function<void()> reload_;
+  /// What is being waited for; each is begun again by its handler, or by Watch().
+  struct {
+    bool clients = false, control = false, health = false, signals = false, watchdog = false;
+  } watching_;
   std::map<Connection*, std::shared_ptr<Connection>> connections_;
   std::map<std::uint64_t, asio::steady_timer> timers_;
   std::uint64_t last_timer_ = 0;

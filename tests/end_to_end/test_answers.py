@@ -5,7 +5,9 @@
 
 import json
 import os
+import pathlib
 import random
+import select
 import socket
 import unittest
 
@@ -126,6 +128,24 @@ class Answers(DaemonCase):
         client.send([("checkpoint.restore", {"name": "far"}), ("checkpoint.save", {"name": "x"}), ("record.stop", {}), ("status", {})])
         client.read_all()
         client.close()
+
+    def test_a_large_checkpoint_holds_up_only_who_asked_for_it(self):
+        reads, asks = Client(self.socket), Client(self.socket)
+        path = pathlib.Path(asks.ask("checkpoint.save", name="large")["result"]["path"])
+        first_line = path.read_bytes().split(b"\n")[0]
+        path.write_bytes(first_line + b"\n" + b" " * (100 << 20) + b"\n")
+        # Were it read by the thread that answers, at most one `version` could come before it. Once is enough.
+        for _ in range(10):
+            reads.send([("checkpoint.restore", {"name": "large"})])
+            for _ in range(10):
+                asks.ask("version")
+            first = not select.select([reads.socket], [], [], 0)[0]
+            reads.read_all()
+            if first:
+                break
+        self.assertTrue(first)
+        reads.close()
+        asks.close()
 
     def test_shutdown_answers_what_was_asked_before(self):
         client = Client(self.socket)

@@ -35,6 +35,7 @@ class Arguments(Case):
             stream.decode("utf-8")  # whatever was given, what comes is text
         if done.returncode == 2:
             self.assertTrue(done.stderr, command)
+            self.assertNotIn(b"\x1b", done.stderr, command)
             self.assertLess(len(done.stderr), 20000, command)
         return done
 
