@@ -97,7 +97,7 @@ void PrintNoise(Output& out, const Json& noise) {
   more("position drift", "position_drift_m", 2, 1e3, "mm after 1 s");
   more("force drift", "force_drift_n", 3, 1, "N after 1 s");
   more("object drift", "object_drift_m", 2, 1e3, "mm after 1 s");
-  more("dropout", "dropout", 1, 100, "%");
+  more("dropout_fraction", "dropout_fraction", 1, 100, "%");
   more("length of a gap", "dropout_gap_s", 3, 1, "s");
   more("latency", "latency_s", 1, 1e3, "ms");
 }

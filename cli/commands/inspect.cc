@@ -208,7 +208,7 @@ ExitCode Truth(Context& context, const Invocation& invocation) {
 void PrintShape(Output& out, const Json& s) {
   out.Line(fmt::format("object       {}", Plain(At(s, "object"))));
   out.Line(fmt::format("touched      {} % of all directions ({} of {} cells)",
-                       Fixed(At(s, "touched_share"), 1, 100), Plain(At(s, "touched_cells")),
+                       Fixed(At(s, "touched_fraction"), 1, 100), Plain(At(s, "touched_cells")),
                        Plain(At(s, "cells"))));
   out.Line(fmt::format("mean radius  {} mm", Fixed(At(s, "mean_radius_m"), 2, 1e3)));
   const Json& truth = At(s, "truth");

@@ -200,7 +200,7 @@ void CheckRange(const char* what, double value, double min, double max) {
 namespace {
 
 void CheckNoise(const NoiseLevels& noise) {
-  CheckRange("dropout", noise.dropout, 0, 0.9);
+  CheckRange("dropout_fraction", noise.dropout, 0, 0.9);
   CheckRange("dropout_gap_s", noise.dropout_gap_s, 0, 1);
   CheckRange("latency_s", noise.latency_s, 0, 0.02);
 }

@@ -38,7 +38,10 @@ void CompareModels(const LoadedScenario& recorded,
 std::vector<std::string> Differences(const SessionConfig& config, std::string_view build,
                                      const std::vector<std::filesystem::path>& search_path) {
   std::vector<std::string> differences = BuildAndParameterDifferences(config, build);
-  CompareModels(config.model, search_path, &differences);
+  std::vector<std::string> models;
+  CompareModels(config.model, search_path, &models);
+  const bool other_build = build != BuildIdentity();  // which is named first
+  differences.insert(differences.begin() + (other_build ? 1 : 0), models.begin(), models.end());
   return differences;
 }
 

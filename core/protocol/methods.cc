@@ -216,7 +216,7 @@ constexpr std::array kNoiseSet = {
               .min = 0,
               .max = 0.05,
               .default_text = "unchanged"},
-    ParamSpec{.name = "dropout",
+    ParamSpec{.name = "dropout_fraction",
               .sentence = "share of the time in which a fingertip feels nothing",
               .min = 0,
               .max = 0.9,
@@ -520,7 +520,7 @@ constexpr std::array kMethods = {
         "it began), max_tilt_rad (of the axis), max_lag_m (behind its reference), "
         "reference_resets (times the reference followed the object), sim_time_s"},
     MethodSpec{"shape", "shape", "the object's surface as the fingers have felt it", kShape, false,
-               "tick, time_s, object, touched_share (of all directions), touched_cells, cells, "
+               "tick, time_s, object, touched_fraction (of all directions), touched_cells, cells, "
                "mean_radius_m, truth (for judging; null before anything was felt well: cells, "
                "rms_error_m, mean_error_m (bias, positive outside), normal_error_rad (median)), "
                "mesh: {vertices_O_m, normals_O, unknown_rad (angle to the nearest felt "

@@ -57,7 +57,7 @@ struct NoiseLevels {
     v("position_drift_m", position_drift_m);
     v("force_drift_n", force_drift_n);
     v("object_drift_m", object_drift_m);
-    v("dropout", dropout);
+    v("dropout_fraction", dropout);
     v("dropout_gap_s", dropout_gap_s);
     v("latency_s", latency_s);
   }

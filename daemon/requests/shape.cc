@@ -57,7 +57,7 @@ Outcome Shape(Service& service, const Params& params, Client&) {
             {"tick", tick},
             {"time_s", static_cast<double>(tick) * dt},
             {"object", object->name},
-            {"touched_share", felt->touched_share()},
+            {"touched_fraction", felt->touched_share()},
             {"touched_cells", felt->touched_cells()},
             {"cells", FeltSurface::kCells},
             {"mean_radius_m", felt->touched_cells() > 0 ? Json(felt->mean_radius()) : Json()},

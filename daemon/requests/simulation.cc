@@ -298,7 +298,7 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
       {"position_drift_m", &NoiseLevels::position_drift_m},
       {"force_drift_n", &NoiseLevels::force_drift_n},
       {"object_drift_m", &NoiseLevels::object_drift_m},
-      {"dropout", &NoiseLevels::dropout},
+      {"dropout_fraction", &NoiseLevels::dropout},
       {"dropout_gap_s", &NoiseLevels::dropout_gap_s},
       {"latency_s", &NoiseLevels::latency_s}};
   for (const auto& [name, level] : kLevels) levels.*level = params.Number(name, levels.*level);

@@ -220,7 +220,7 @@ Json NoiseJson(const NoiseLevels& n) {
           {"position_drift_m", n.position_drift_m},
           {"force_drift_n", n.force_drift_n},
           {"object_drift_m", n.object_drift_m},
-          {"dropout", n.dropout},
+          {"dropout_fraction", n.dropout},
           {"dropout_gap_s", n.dropout_gap_s},
           {"latency_s", n.latency_s}};
 }

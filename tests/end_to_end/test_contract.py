@@ -25,7 +25,7 @@ UNITS = ("_m", "_rad", "_n", "_s", "_nm", "_hz", "_kg", "_mm", "_deg", "_bytes",
 PLAIN = re.compile(
     r"(tick|ticks|seq|dropped|id|job|sub|seed|clients|backlog|protocol|pid|cycles?|turns|steps?|count|bytes|code|max_cycles|exit_code|frames?|number|runs?|commands|messages|segments|continues|"
     r"progress|real_time_factor|speed|friction|mu|phi\w*|manipulability|stability|threshold|epsilon|volume|isotropy|sqrt_det|min_singular_value|"
-    r"value|before|changed_parameters|kept|min|max|default|normal\w*|\w+_tick|frames_dropped|\w+_cycles|regrasps|ticks_per_s|reload|rows?|columns?|\d+|force_closure|axis|principal_axes|pieces|collisions|triangles|gradient_norm\w*|size|\w+_frames)$")
+    r"value|before|changed_parameters|kept|min|max|default|normal\w*|\w+_tick|frames_dropped|\w+_cycles|regrasps|ticks_per_s|reload|rows?|columns?|\d+|force_closure|axis|principal_axes|pieces|collisions|triangles|gradient_norm\w*|size|\w+_frames|\w*cells|reference_resets)$")
 
 
 def numbers(value, path=()):

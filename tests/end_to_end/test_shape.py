@@ -29,7 +29,7 @@ class Shape(DaemonCase):
         self.expect(0, "rotate", "--angle", 90, "--wait")
         shape = self.json("shape")
         self.assertEqual(shape["object"], "egg")
-        self.assertGreater(shape["touched_share"], 0.05)
+        self.assertGreater(shape["touched_fraction"], 0.05)
         self.assertLess(shape["truth"]["rms_error_m"], 0.0003)
         self.assertLess(shape["truth"]["normal_error_rad"], math.radians(5))
         self.assertIn("bias", self.expect(0, "shape").stdout)
