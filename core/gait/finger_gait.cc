@@ -41,8 +41,14 @@ void FingerGait::Enter(GaitPhase phase) {
 
 void FingerGait::StartMotion(const GaitParameters& parameters, const ObjectWrench& wrench) {
   const double left = std::abs(request_.angle_rad) - turned_before_;
-  const double step =
-      request_.continuous ? parameters.step_rad : std::min(parameters.step_rad, left);
+  const double due = std::max(0.0, parameters.step_rad - turned_meanwhile_);
+  const double step = request_.continuous ? due : std::min(due, left);
+  const bool went_on = turned_meanwhile_ > 0;
+  turned_meanwhile_ = 0;
+  if (went_on && step < parameters.progress && step < left) {
+    BeginCycle();
+    return Enter(GaitPhase::kChoose);
+  }
   const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
   ObjectMotion per_rad;
   if (parameters.forgive && step > 0.5 * parameters.step_rad)
@@ -55,11 +61,15 @@ void FingerGait::StartMotion(const GaitParameters& parameters, const ObjectWrenc
 
 void FingerGait::EndMotion(const GaitParameters& parameters) {
   turned_before_ += manipulation_.travelled();
-  turned_in_cycle_ = manipulation_.travelled();
   if (const int finger = manipulation_.end_finger(); finger >= 0) {
     double& lead = lead_[finger];
-    lead = std::min(parameters.lead_max, lead + 0.5 * (manipulation_.length() - turned_in_cycle_));
+    const double missing = manipulation_.length() - manipulation_.travelled();
+    lead = std::min(parameters.lead_max, lead + 0.5 * missing);
   }
+  BeginCycle();
+}
+
+void FingerGait::BeginCycle() {
   for (const GaitStep& step : order_) waiting_.add(step.finger);
   refused_finger_ = -1;
   sought_ = false;
@@ -83,7 +93,12 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
     const Vector3d& p_WO = tick.estimate.p_WO;
     const Quaterniond& q_WO = tick.estimate.q_WO;
     const Vector3d p_WC = p_WO + q_WO * landing.p_OC;
-    return {p_WC, p_WO + q_WO * landing.p_OF, q_WO * landing.normal_O, p_WC, p_WO};
+    return {p_WC,
+            p_WO + q_WO * landing.p_OF,
+            q_WO * landing.normal_O,
+            p_WC,
+            p_WO,
+            along_.speed() * sign_ * request_.axis_W};
   }
   const StanceContact home = HomeOf(finger, parameters);
   Vector3d recall = Vector3d::Zero();
@@ -92,7 +107,7 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
     recall = Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
   }
   const Vector3d& centre = wrench.p_ref();
-  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, centre + recall, centre};
+  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, centre + recall, centre, {}};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,
@@ -112,7 +127,7 @@ Regrasp::Request FingerGait::RequestOf(const GaitStep& step, int next,
   const bool scarce = planned(tick) && tick.margins.without[step.finger] < tick.gait.margin_wanted;
   request.transfer_s = scarce ? tick.gait.careful_s : tick.gait.transfer_s;
   if (planned(tick) && !scarce && rubs_ < tick.gait.rubs) request.rub_s = tick.gait.rub_s;
-  request.explore = tick.gait.mode == GaitMode::kExploring && request_.make_room_for < 0;
+  request.explore = Explores(tick, step.finger);
   request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
   request.slide.criterion = Criterion::kSwitched;
   if (step.objective == GaitObjective::kStabilityWithoutNext && next >= 0) {
@@ -165,7 +180,8 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
     return;
   }
   if (turned_before_ > 0) ++cycles_;
-  idle_cycles_ = turned_in_cycle_ < tick.gait.progress ? idle_cycles_ + 1 : 0;
+  idle_cycles_ = turned_before_ - turned_until_ < tick.gait.progress ? idle_cycles_ + 1 : 0;
+  turned_until_ = turned_before_;
   if (idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles)) {
     StartMotion(tick.gait, wrench);
     return;
@@ -190,10 +206,8 @@ void FingerGait::Forgive(const ControlTick& tick, bool held, ObjectWrench* wrenc
 ObjectMotion FingerGait::UpdateMotion(const ControlTick& tick, ObjectWrench* wrench) {
   const ObjectMotion motion = manipulation_.Update(tick, *wrench, home_);
   if (manipulation_.end() == LocalManipulation::End::kNone) return motion;
-  const double before = turned_before_;
   EndMotion(tick.gait);
   Forgive(tick, false, wrench);
-  turned_in_cycle_ = turned_before_ - before;
   Enter(stop_ || there() ? GaitPhase::kFinish : GaitPhase::kSettle);
   return motion;
 }
@@ -305,7 +319,7 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
     case GaitPhase::kFailed:
       break;
   }
-  return motion;
+  return motion.w_W.isZero(0) ? TurnMeanwhile(tick, wrench) : motion;
 }
 
 }  // namespace regrasp

@@ -10,6 +10,7 @@
 #include "core/gait/regrasp.h"
 #include "core/gait/stance_plan.h"
 #include "core/gait/stance_search.h"
+#include "core/gait/turn_along.h"
 
 namespace regrasp {
 
@@ -119,7 +120,10 @@ class FingerGait {
     v("regrasp", regrasp_);
     v("waiting", waiting_);
     v("turned_before", turned_before_);
-    v("turned_in_cycle", turned_in_cycle_);
+    v("turned_until", turned_until_);
+    v("turned_meanwhile", turned_meanwhile_);
+    v("along", along_);
+    v("gain", gain_);
     v("idle_cycles", idle_cycles_);
     v("refused_finger", refused_finger_, v.Finger());
     v("sought", sought_);
@@ -164,6 +168,12 @@ class FingerGait {
   void Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench);
   void StartMotion(const GaitParameters& parameters, const ObjectWrench& wrench);
   void EndMotion(const GaitParameters& parameters);
+  /// Every finger waits for its turn again.
+  void BeginCycle();
+  /// The object turns on between two motions, while fingers regrasp.
+  ObjectMotion TurnMeanwhile(const ControlTick& tick, const ObjectWrench& wrench);
+  /// Whether Algorithm 1 shall run where the finger lands.
+  bool Explores(const ControlTick& tick, int finger) const;
   /// The same with landings planned on the felt surface: a refused finger waits; when only refused
   /// ones are left, the others make room for one of them.
   void NextPlanned(const ControlTick& tick, const ObjectWrench& wrench);
@@ -219,6 +229,12 @@ class FingerGait {
   std::array<Vector3d, kMaxFingers> found_ = ZeroVectors<kMaxFingers>();
   // The gradient with which its last exploration ended, in W [1/m]; zero: none yet.
   std::array<Vector3d, kMaxFingers> gradient_ = ZeroVectors<kMaxFingers>();
+  // Relative gain of its last explorations; 1: none yet.
+  std::array<double, kMaxFingers> gain_ = [] {
+    std::array<double, kMaxFingers> gain{};
+    gain.fill(1);
+    return gain;
+  }();
   // By how much each finger's target is turned back about the axis: half of what a motion that
   // ended at this finger's limit still wanted is added, so that it has more way the next time
   // [rad].
@@ -226,7 +242,9 @@ class FingerGait {
   LocalManipulation manipulation_;
   Regrasp regrasp_;
   FingerSet waiting_;  // the fingers that have not had their turn in this cycle
-  double turned_before_ = 0, turned_in_cycle_ = 0;
+  double turned_before_ = 0, turned_until_ = 0;  // now; when the last cycle ended [rad]
+  double turned_meanwhile_ = 0;  // of the present cycle, while fingers regrasped [rad]
+  TurnAlong along_;
   int idle_cycles_ = 0;
   int refused_finger_ = -1;  // in this cycle
   bool sought_ = false;      // another stance, in this cycle

@@ -139,6 +139,35 @@ void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench
   Refuse(tick, refused);
 }
 
+ObjectMotion FingerGait::TurnMeanwhile(const ControlTick& tick, const ObjectWrench& wrench) {
+  const GaitParameters& parameters = tick.gait;
+  const bool regrasps = phase_ == GaitPhase::kRegrasp && !regrasp_.aborted();
+  const bool may = regrasps || phase_ == GaitPhase::kSettle || phase_ == GaitPhase::kChoose ||
+                   phase_ == GaitPhase::kPlan;
+  const double left = std::abs(request_.angle_rad) - turned_before_;
+  // The first round of a gait is at rest: nothing is known of the object yet.
+  if (!may || stop_ || !planned(tick) || turned_before_ <= 0 || parameters.along_speed <= 0 ||
+      (!request_.continuous && left <= 0)) {
+    along_.Stop();
+    return {};
+  }
+  double most = parameters.along_speed;
+  if (regrasps && regrasp_.explores()) most = std::min(most, parameters.along_explore_speed);
+  if (request_.speed_rad_s > 0) most = std::min(most, request_.speed_rad_s);
+  if (!request_.continuous) most = std::min(most, std::sqrt(2 * parameters.acceleration * left));
+  const int away = finger();
+  const double margin = away >= 0 ? tick.margins.without[away] : tick.margins.all;
+  const Vector3d axis_W = sign_ * request_.axis_W;
+  const double speed = along_.Update(tick, wrench, tick.grasp.without(away), margin, axis_W, most);
+  ObjectMotion per_rad;
+  if (parameters.forgive)
+    per_rad = forgiveness_.WinBack(parameters, wrench, request_.axis_W, turned_so_far(),
+                                   parameters.step_rad);
+  turned_before_ += speed * tick.dt;
+  turned_meanwhile_ += speed * tick.dt;
+  return {speed * per_rad.v_W, speed * (per_rad.w_W + axis_W)};
+}
+
 double FingerGait::ReserveOf(const ControlTick& tick, int finger) const {
   const FingerPosture now =
       PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, tick.estimate.q));

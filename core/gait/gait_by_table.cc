@@ -36,7 +36,20 @@ void FingerGait::Remember(int finger, const ControlTick& tick, const ObjectWrenc
   found += tick.gait.found_share * (shift - found);
   const double limit = tick.gait.disc_inside * tick.gait.disc_radius;
   if (found.norm() > limit) found *= limit / found.norm();
-  gradient_[finger] = regrasp_.slide().algorithm().gradient_W();
+  const GuidedSlide& slide = regrasp_.slide();
+  gradient_[finger] = slide.algorithm().gradient_W();
+  const double gain = slide.phi_final() / std::max(1e-6, slide.phi_initial()) - 1;
+  const double weight = gain_[finger] == 1 ? 1.0 : tick.gait.found_share;
+  gain_[finger] += weight * (gain - gain_[finger]);
+}
+
+bool FingerGait::Explores(const ControlTick& tick, int finger) const {
+  const GaitParameters& parameters = tick.gait;
+  if (parameters.mode != GaitMode::kExploring || request_.make_room_for >= 0 ||
+      parameters.explore == GaitExplore::kNever)
+    return false;
+  return parameters.explore == GaitExplore::kAlways || gain_[finger] >= parameters.explore_gain ||
+         (planned(tick) && landing_[finger].unknown >= parameters.explore_unknown);
 }
 
 double FingerGait::DiscShare(const ControlTick& tick) const {

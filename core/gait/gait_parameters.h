@@ -11,6 +11,14 @@ enum class GaitMode : int {
 };
 inline constexpr std::array<std::string_view, 2> kGaitModeNames = {"exploring", "returning"};
 
+/// Which fingers of an exploring gait explore when they regrasp (values of gait.explore).
+enum class GaitExplore : int {
+  kNever = 0,    ///< none
+  kUnknown = 1,  ///< where the surface is not known yet, or its last explorations gained enough
+  kAlways = 2,   ///< every one
+};
+inline constexpr std::array<std::string_view, 3> kGaitExploreNames = {"never", "unknown", "always"};
+
 /// Whole sets of gait parameters (values of gait.preset).
 enum class GaitPreset : int {
   kPlanned = 0,  ///< the default: landings planned on the felt surface
@@ -48,6 +56,11 @@ struct GaitParameters {
       0.035;  ///< ... with a contact this far from its first place in the palm [m]
   double lag_position = 0.002;  ///< the reference waits while the object is this far behind [m]
   double lag_rotation = 0.12;   ///< ... or so much [rad]
+  // Meanwhile, while a finger regrasps (turn_along.h).
+  double along_speed = 0.35;       ///< highest speed of the object; 0: it rests [rad/s]
+  double along_explore_speed = 0;  ///< the same while the finger explores [rad/s]
+  double along_ahead_s = 0.5;      ///< no faster than the others can follow for so long [s]
+  double along_margin = 1.3;  ///< load margin of those that hold from which on it goes at full [N]
   // When a finger may leave.
   double margin_min = 0.25;  ///< rho_min: least load margin of the grasp without it [N]
   double margin_wanted =
@@ -77,6 +90,9 @@ struct GaitParameters {
   double abort_position = 0.003;         ///< object error at which a regrasp is broken off [m]
   double abort_rotation = 0.2094395102;  ///< (12 deg)
   // Exploring.
+  GaitExplore explore = GaitExplore::kAlways;
+  double explore_unknown = 0.12;  ///< unknown: from this angle to what was felt on [rad]
+  double explore_gain = 0.02;     ///< ... or from this gain of its last explorations on
   double disc_radius =
       0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
   double explore_s = 0.5;  ///< longest exploration per regrasp [s]

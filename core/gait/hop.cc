@@ -57,11 +57,11 @@ void Hop::Enter(Phase phase) {
 }
 
 void Hop::Reach(const Vector3d& velocity, double dt, FingerTask* task) {
-  p_target_W_ += velocity * dt;
+  p_target_W_ += (velocity + v_carried_W_) * dt;
   path_ += velocity.norm() * dt;
   task->mode = FingerMode::kReach;
   task->p_target_W = p_target_W_;
-  task->v_target_W = velocity;
+  task->v_target_W = velocity + v_carried_W_;
 }
 
 void Hop::KeepAbove(const ControlTick& tick) {
@@ -79,6 +79,7 @@ void Hop::KeepAbove(const ControlTick& tick) {
 void Hop::Update(const ControlTick& tick, const Target& target, bool down, FingerTask* task) {
   const GaitParameters& parameters = tick.gait;
   ++ticks_;
+  v_carried_W_ = target.w_W.cross(p_target_W_ - target.p_WO);
   if (phase_ == Phase::kLift) {
     Reach(parameters.lift_speed * normal_W_, tick.dt, task);
     if (down) {

@@ -27,7 +27,8 @@ class Hop {
   struct Target {
     Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
     Vector3d normal_W = Vector3d::UnitZ();  ///< outward
-    Vector3d p_WO = Vector3d::Zero();       ///< the object's centre, about which the way is an arc
+    Vector3d p_WO = Vector3d::Zero();  ///< the object's centre, about which the way is an arc [m]
+    Vector3d w_W = Vector3d::Zero();   ///< of the object; the way turns with it [rad/s]
   };
 
   /// From where the finger is.
@@ -52,6 +53,7 @@ class Hop {
     v("p_target_W", p_target_W_);
     v("normal_W", normal_W_);
     v("path", path_);
+    v("v_carried_W", v_carried_W_);
   }
 
  private:
@@ -61,7 +63,7 @@ class Hop {
   void GoBack(const ControlTick& tick, FingerTask* task);
   /// Raises the target to the height above the felt surface at which a finger crosses it.
   void KeepAbove(const ControlTick& tick);
-  /// Moves the target of the fingertip centre on with this velocity [m/s].
+  /// Moves the target of the fingertip centre on with this velocity against the object [m/s].
   void Reach(const Vector3d& velocity, double dt, FingerTask* task);
 
   Phase phase_ = Phase::kIdle;
@@ -69,10 +71,11 @@ class Hop {
   bool over_surface_ = false, went_back_ = false;
   int ticks_ = 0;                                                           // in this phase
   Vector3d p_OLeft_ = Vector3d::Zero(), normal_OLeft_ = Vector3d::UnitZ();  // where it left, in O
-  int late_ticks_ = 0;                      // kAcross: since the target arrived above its end
-  Vector3d p_target_W_ = Vector3d::Zero();  // of the fingertip centre
-  Vector3d normal_W_ = Vector3d::UnitZ();   // up
-  double path_ = 0;                         // of the target, in this phase [m]
+  int late_ticks_ = 0;                       // kAcross: since the target arrived above its end
+  Vector3d p_target_W_ = Vector3d::Zero();   // of the fingertip centre
+  Vector3d normal_W_ = Vector3d::UnitZ();    // up
+  double path_ = 0;                          // of the target, in this phase [m]
+  Vector3d v_carried_W_ = Vector3d::Zero();  // of the object where the target is [m/s]
 };
 
 }  // namespace regrasp

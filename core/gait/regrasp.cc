@@ -112,7 +112,7 @@ void Regrasp::Travel(const ControlTick& tick, const Target& target, FingerTask* 
       hop_.Start(tick, finger(), request_.over_surface);
     return;
   }
-  hop_.Update(tick, {target.p_WF, target.normal_W, target.p_WO}, aborted_, task);
+  hop_.Update(tick, {target.p_WF, target.normal_W, target.p_WO, target.w_W}, aborted_, task);
   if (hop_.phase() == Hop::Phase::kLanded) slide_.Land(request_.explore);
   if (hop_.phase() == Hop::Phase::kBlocked) slide_.Land(false);
 }

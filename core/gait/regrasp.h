@@ -56,6 +56,7 @@ class Regrasp {
     Vector3d normal_W = Vector3d::UnitZ();  ///< outward
     Vector3d p_WR = Vector3d::Zero();       ///< explore: the last explorations' end [m]
     Vector3d p_WO = Vector3d::Zero();  ///< the object's centre, about which a hop is an arc [m]
+    Vector3d w_W = Vector3d::Zero();   ///< of the object, with which the target turns [rad/s]
   };
 
   void Start(const Request& request);
@@ -68,6 +69,13 @@ class Regrasp {
   const Request& request() const { return request_; }
   int finger() const { return request_.slide.finger; }
   Phase phase() const;
+  /// Slides with its exploring force, to explore or to feel the friction.
+  bool explores() const {
+    return (slide_.phase() == GuidedSlide::Phase::kAway && request_.hop &&
+            hop_.phase() == Hop::Phase::kIdle) ||
+           (slide_.phase() >= GuidedSlide::Phase::kSettle &&
+            slide_.phase() <= GuidedSlide::Phase::kReturn);
+  }
   bool active() const { return slide_.active(); }
   bool aborted() const { return aborted_; }
   /// Found no surface to stand on.

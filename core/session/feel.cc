@@ -3,20 +3,22 @@
 namespace regrasp {
 namespace {
 
-constexpr int kInterval = 5;           // ticks from one look at a finger to the next
-constexpr double kSettled_s = 0.040;   // the contact filters have followed
-constexpr double kLeastForce = 0.1;    // [N]
-constexpr double kMovingSpeed = 0.02;  // of the reference: the sensed pose lags behind [rad/s]
+constexpr int kInterval = 5;          // ticks from one look at a finger to the next
+constexpr double kSettled_s = 0.040;  // the contact filters have followed
+constexpr double kLeastForce = 0.1;   // [N]
 
 }  // namespace
 
 void Session::Impl::Feel() {
-  if (tick % kInterval != 0 || motion.w_W.norm() > kMovingSpeed) return;
+  if (tick % kInterval != 0) return;
   const Estimate& e = estimator.estimate();
-  const Quaterniond q_OW = e.q_WO.conjugate();
+  // The sensed pose lags behind the contacts, which move with the joint angles.
+  const double late_s = parameters.control.pose_filter_s - parameters.control.joint_filter_s;
+  const Quaterniond q_OW = (FromRotationVector(late_s * motion.w_W) * e.q_WO).conjugate();
+  const Vector3d p_WO = e.p_WO + late_s * motion.v_W;
   for (const FingerEstimate& f : e.fingers)
     if (f.in_contact && f.force >= kLeastForce && f.ticks_in_contact * dt >= kSettled_s)
-      felt.Add(q_OW * (f.p_WC - e.p_WO), q_OW * f.normal_W);
+      felt.Add(q_OW * (f.p_WC - p_WO), q_OW * f.normal_W);
 }
 
 void Session::Impl::FeelFriction() {
