@@ -180,6 +180,7 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
     return;
   }
   if (turned_before_ > 0) ++cycles_;
+  if (there()) return Enter(GaitPhase::kFinish);  // while fingers regrasped
   idle_cycles_ = turned_before_ - turned_until_ < tick.gait.progress ? idle_cycles_ + 1 : 0;
   turned_until_ = turned_before_;
   if (idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles)) {
