@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "cli/hand/hand_command.h"
 #include "core/files/names.h"
@@ -59,7 +61,9 @@ int Main(int argc, char** argv) {
     if (!options.Has("--quiet"))
       fmt::print("{}\n", options.Has("--json") ? answer.json.dump() : answer.text);
     if (std::fflush(stdout) != 0)
-      throw Failure(ExitCode::kIo, "cannot write to standard output", "regrasp doctor");
+      throw Failure(ExitCode::kIo,
+                    std::string("cannot write to standard output: ") + std::strerror(errno),
+                    "regrasp doctor");
     return static_cast<int>(answer.code);
   } catch (const Failure& failure) {
     TellFailure(options, failure.what(), failure.next);

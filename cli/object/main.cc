@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -191,7 +193,9 @@ ExitCode Show(const std::string& name, const Options& given) {
     for (const std::string& refusal : shown.refusals) fmt::print("  refused: {}\n", refusal);
     if (json.contains("picture")) fmt::print("{}\n", json["picture"].get<std::string>());
   }
-  if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+  if (std::fflush(stdout) != 0)
+    throw std::runtime_error(std::string("cannot write to standard output: ") +
+                             std::strerror(errno));
   return shown.refusals.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -36,7 +38,9 @@ struct Command {
 void Print(const Command& command, const Json& result, const std::string& text) {
   if (!command.options.contains("--quiet"))
     fmt::print("{}\n", command.json() ? result.dump() : text);
-  if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write to standard output");
+  if (std::fflush(stdout) != 0)
+    throw std::runtime_error(std::string("cannot write to standard output: ") +
+                             std::strerror(errno));
 }
 
 /// First of all: what a run was made with, where that is not what this program has. Each once.

@@ -82,15 +82,14 @@ Outcome Service::Call(const std::string& method, const JsonIn& params, Client* c
 std::vector<Sample> Service::Drain() {
   // The control thread pushes a frame before the events and jobs it shows, so those are taken
   // first.
-  const auto room_for_another = [this] { return ended_.reserve(ended_.size() + 1), true; };
-  for (JobRecord job; room_for_another() && control_.PopJob(&job);) ended_.push_back(job);
+  TakeJobs();
   std::vector<PublishedEvent> news;
   for (PublishedEvent event; control_.PopEvent(&event);) news.push_back(event);
 
   // Journal news go before the frames that show them.
-  std::vector<Published> frames;
-  for (Published published; control_.PopFrame(&published);) frames.push_back(published);
+  TakeFrames();
   TakeInNews();
+  const std::vector<Published> frames = std::exchange(frames_, {});
 
   const bool fresh = !frames.empty();
   for (const Published& published : frames) {
@@ -163,6 +162,15 @@ void Service::LookAfterRecorder() {
   if (!host_->Background([old] { old->Finish(); }, [] {})) old->Finish();
 }
 
+void Service::TakeJobs() {
+  const auto room_for_another = [this] { return ended_.reserve(ended_.size() + 1), true; };
+  for (JobRecord job; room_for_another() && control_.PopJob(&job);) ended_.push_back(job);
+}
+
+void Service::TakeFrames() {
+  for (Published published; control_.PopFrame(&published);) frames_.push_back(published);
+}
+
 void Service::TakeInNews() {
   for (JournalNews item; untaken_ || control_.PopNews(&item); untaken_.reset()) {
     if (!untaken_) untaken_ = std::move(item);
@@ -189,6 +197,9 @@ void Service::TakeIn(const JournalNews& news) {
       if (recorder) recorder->Add(news.entry, news.run);
       break;
     case JournalNews::Kind::kMark:
+      // What ended before the mark is known before whoever waits for the mark hears of it.
+      TakeJobs();
+      TakeFrames();
       if (const auto mark = marks_.extract(news.request)) mark.mapped()(news);
       break;
   }

@@ -201,6 +201,8 @@ class Service {
   /// Throws busy where so many commands cannot be taken, now or of one run.
   void CheckMayPost(std::size_t commands, std::size_t reserve) const;
   void TakeInNews();
+  void TakeJobs();
+  void TakeFrames();
   /// Tells of a recording that has ended by itself.
   void LookAfterRecorder();
   /// An event of the daemon's own.
@@ -215,6 +217,7 @@ class Service {
   ControlLoop control_;
   JobTable jobs_;
   std::vector<JobRecord> ended_;        ///< taken from the control thread, not yet taken in
+  std::vector<Published> frames_;       ///< taken, not yet shown
   std::optional<JournalNews> untaken_;  ///< the same
   Journal journal_;
   std::uint64_t run_ = 0;

@@ -95,7 +95,7 @@ class Shown(Case):
 
 
 class InsideTheHand(DaemonCase):
-    ARGUMENTS = ["--paused", "--speed", "max"]
+    ARGUMENTS = ["--speed", "max"]
 
     def test_an_object_that_begins_inside_a_link_is_said_so(self):
         self.assertEqual(self.json("status")["warnings"], [])
@@ -103,15 +103,14 @@ class InsideTheHand(DaemonCase):
         big.parent.mkdir()
         big.write_text(BALL.format(mass=1.0, moment=1.5e-3, z=0, collisions=SPHERE.format(x=0, r=0.06)))
         self.expect(0, "down")
-        done = self.expect(0, "up", "--paused", "--models-dir", self.dir, "--object", "big")
+        done = self.expect(0, "up", "--speed", "max", "--models-dir", self.dir, "--object", "big")
         self.assertRegex(done.stdout, r"warning: the object begins \d+\.\d mm inside the link \w+; grasp will refuse")
         self.assertEqual(len(self.json("status")["warnings"]), 1)
-        cause, _ = self.refused(5, "grasp")
-        self.assertIn("inside the link", cause)
+        self.assertIn("inside the link", self.expect(1, "grasp", "--wait").stdout)
         self.assertEqual(self.json("reset", "--object", "sphere")["warnings"], [])
         self.assertIn("inside the link", self.expect(0, "reset", "--object", "big").stdout)
         self.expect(0, "reset", "--object", "sphere")
-        self.expect(0, "grasp")
+        self.expect(0, "grasp", "--wait")
 
 
 if __name__ == "__main__":

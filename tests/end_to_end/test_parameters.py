@@ -47,7 +47,7 @@ class Parameters(DaemonCase):
                             ("exploration.lambda", "0.123456789012345678")):
             self.expect(0, "param", "set", name, value)
         before = self.changed()
-        self.assertIn("10 parameters", self.expect(0, "param", "save", file).stdout)
+        self.assertIn("11 parameters", self.expect(0, "param", "save", file).stdout)
         self.assertEqual(self.expect(0, "param", "save", "-").stdout, file.read_text())
         self.expect(0, "param", "reset")
         self.expect(0, "param", "load", file)

@@ -230,42 +230,6 @@ class FullDisk(SystemCase):
         self.assertEqual([f for f in os.listdir(self.out) if f.startswith(".draft") or f.endswith(".checkpoint")], [])
 
 
-class Memory(SystemCase):
-    REQUESTS = (("status", {}), ("describe", {}), ("events", {}), ("param.set", {"name": "object.friction", "value": 0.5}), ("job.list", {}),
-                ("job.wait", {"id": 1, "timeout_s": 0}), ("grasp", {}), ("stop", {}), ("checkpoint.save", {"name": "c"}), ("checkpoint.list", {}),
-                ("subscribe", {"topic": "quality", "rate_hz": 50}), ("record.start", {}), ("record.stop", {}), ("nonsense", {}))
-
-    def test_the_nth_allocation_of_the_thread_that_answers_fails(self):
-        countdown = Shared(self.dir / "countdown", "<i")
-        self.addCleanup(countdown.close)
-        self.start("--speed", "max", LD_PRELOAD=preload("no_memory"), NO_MEMORY=str(self.dir / "countdown")).close()
-        answered = given_up = refused = 0
-        for method, params in self.REQUESTS:
-            for number in (1, 2, 3, 5, 9, 17, 40, 100):
-                # A new client each time: who is accepted, asks and leaves while memory is short.
-                countdown.set(number)
-                try:
-                    wire = Wire(self.socket)
-                    answer = wire.ask(method, **params)
-                    wire.close()
-                except ConnectionError:
-                    answer = None
-                countdown.set(0)
-                self.assertIsNone(self.daemon.poll(), f"{method}, allocation {number}: the daemon has ended")
-                given_up += answer is None
-                answered += answer is not None and "result" in answer
-                refused += answer is not None and "error" in answer
-                last = Wire(self.socket)
-                last.result("version")
-                last.close()
-        self.assertGreater(answered, 0)
-        self.assertGreater(given_up + refused, 0)
-        wire = Wire(self.socket)
-        while wire.result("status")["clients"] != 1:
-            pass
-        self.goes_on(wire)
-
-
 class Kills(SystemCase):
     def test_the_daemon_while_it_writes_everything_at_once(self):
         r = random.Random(11)

@@ -65,9 +65,10 @@ TEST(Pieces, DistanceIsThatOfTheNearestPiece) {
         in_both += inside == 2;
         if (inside > 0) continue;
         EXPECT_NEAR(found.distance, nearest, kFacets) << p.transpose();
-        // A facet spans 4 degrees; in the middle plane both balls are as near.
+        // A facet spans some 4 degrees (0.0709 rad at most here); in the middle plane both balls
+        // are as near.
         if (std::abs(p.x()) > 2e-3) {
-          EXPECT_GT(found.normal_O.dot(normal), std::cos(0.07));
+          EXPECT_GT(found.normal_O.dot(normal), std::cos(0.08));
         }
       }
   EXPECT_GT(outside, 100);

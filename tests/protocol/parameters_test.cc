@@ -140,10 +140,11 @@ TEST_F(ParameterRequests, WhatAPresetChangesIsListedAndNamesIt) {
   client->Result("param.set", {{"name", "gait.max_excursion"}, {"value", 0.02}});
   EXPECT_EQ(Get("gait.max_excursion")["source"], "set while running");
   const Names changed = Changed();
-  EXPECT_EQ(changed, (Names{"gait.forgive", "gait.margin_min", "gait.max_excursion", "gait.mode",
-                            "gait.plan", "gait.preset"}));
+  EXPECT_EQ(changed, (Names{"gait.along_speed", "gait.forgive", "gait.margin_min",
+                            "gait.max_excursion", "gait.mode", "gait.plan", "gait.preset"}));
   Names listed;
-  for (const Json& p : client->Result("param.reset", {{"name", "gait.preset"}})["parameters"]) {
+  const Json reset = client->Result("param.reset", {{"name", "gait.preset"}});
+  for (const Json& p : reset["parameters"]) {
     listed.push_back(p["name"]);
     EXPECT_NE(p["before"], p["value"]) << p.dump();
     EXPECT_EQ(p["changed"], false);

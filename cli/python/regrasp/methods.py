@@ -134,7 +134,7 @@ class Methods:
         """
         return self._ask("noise.get", {})
 
-    def noise_set(self, preset: str | None = None, position_m: float | None = None, normal_rad: float | None = None, force_n: float | None = None, joint_rad: float | None = None, object_position_m: float | None = None, object_rotation_rad: float | None = None, position_bias_m: float | None = None, force_bias_n: float | None = None, joint_bias_rad: float | None = None, object_bias_m: float | None = None, position_drift_m: float | None = None, force_drift_n: float | None = None, object_drift_m: float | None = None, dropout: float | None = None, dropout_gap_s: float | None = None, latency_s: float | None = None) -> dict:
+    def noise_set(self, preset: str | None = None, position_m: float | None = None, normal_rad: float | None = None, force_n: float | None = None, joint_rad: float | None = None, object_position_m: float | None = None, object_rotation_rad: float | None = None, position_bias_m: float | None = None, force_bias_n: float | None = None, joint_bias_rad: float | None = None, object_bias_m: float | None = None, position_drift_m: float | None = None, force_drift_n: float | None = None, object_drift_m: float | None = None, dropout_fraction: float | None = None, dropout_gap_s: float | None = None, latency_s: float | None = None) -> dict:
         """Change noise levels.
         preset: all levels of a preset; other parameters then change single levels; one of off, fine, paper, coarse,
             taxel; left out: the present levels.
@@ -151,12 +151,12 @@ class Methods:
         position_drift_m: contact position, random walk, after one second [m]; 0 to 0.02; left out: unchanged.
         force_drift_n: normal force, random walk, after one second [N]; 0 to 2; left out: unchanged.
         object_drift_m: object position, random walk, after one second [m]; 0 to 0.05; left out: unchanged.
-        dropout: share of the time in which a fingertip feels nothing; 0 to 0.9; left out: unchanged.
+        dropout_fraction: share of the time in which a fingertip feels nothing; 0 to 0.9; left out: unchanged.
         dropout_gap_s: mean length of such a gap; at least a sample [s]; 0 to 1; left out: unchanged.
         latency_s: age of what a fingertip reports [s]; 0 to 0.02; left out: unchanged.
         Returns preset and every level.
         """
-        return self._ask("noise.set", {"preset": preset, "position_m": position_m, "normal_rad": normal_rad, "force_n": force_n, "joint_rad": joint_rad, "object_position_m": object_position_m, "object_rotation_rad": object_rotation_rad, "position_bias_m": position_bias_m, "force_bias_n": force_bias_n, "joint_bias_rad": joint_bias_rad, "object_bias_m": object_bias_m, "position_drift_m": position_drift_m, "force_drift_n": force_drift_n, "object_drift_m": object_drift_m, "dropout": dropout, "dropout_gap_s": dropout_gap_s, "latency_s": latency_s})
+        return self._ask("noise.set", {"preset": preset, "position_m": position_m, "normal_rad": normal_rad, "force_n": force_n, "joint_rad": joint_rad, "object_position_m": object_position_m, "object_rotation_rad": object_rotation_rad, "position_bias_m": position_bias_m, "force_bias_n": force_bias_n, "joint_bias_rad": joint_bias_rad, "object_bias_m": object_bias_m, "position_drift_m": position_drift_m, "force_drift_n": force_drift_n, "object_drift_m": object_drift_m, "dropout_fraction": dropout_fraction, "dropout_gap_s": dropout_gap_s, "latency_s": latency_s})
 
     def param_get(self, name: str | None = None) -> dict:
         """Values, units, ranges and sources of parameters.
@@ -295,8 +295,8 @@ class Methods:
     def shape(self, mesh: bool | None = None) -> dict:
         """The object's surface as the fingers have felt it.
         mesh: also the surface as a closed mesh, in the object's frame; left out: false.
-        Returns tick, time_s, object, touched_share (of all directions), touched_cells, cells, mean_radius_m, truth
-            (for judging; null before anything was felt well: cells, rms_error_m, mean_error_m (bias, positive
+        Returns tick, time_s, object, touched_fraction (of all directions), touched_cells, cells, mean_radius_m,
+            truth (for judging; null before anything was felt well: cells, rms_error_m, mean_error_m (bias, positive
             outside), normal_error_rad (median)), mesh: {vertices_O_m, normals_O, unknown_rad (angle to the nearest
             felt direction), error_m (to the true surface), triangles}.
         """
