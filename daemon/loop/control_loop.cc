@@ -184,7 +184,8 @@ void ControlLoop::Apply(const Command& command) {
 }
 
 void ControlLoop::Mark(std::uint64_t request) {
-  Publish();  // whoever is told of the mark also has its frame
+  CollectOutput();  // jobs that have ended before it go before it
+  Publish();        // whoever is told of the mark also has its frame
   JournalNews news;
   news.kind = JournalNews::Kind::kMark;
   news.run = run_;
