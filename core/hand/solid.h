@@ -26,12 +26,10 @@ Solid CapsuleSolid(double radius, double half_length);
 /// Of a closed mesh: the sum over signed tetrahedra from the origin [Tonon 2004]. Volume where
 /// closed pieces overlap counts once for each.
 Solid MeshSolid(const TriangleMesh& mesh);
-/// Of closed pieces that may overlap, each place counted once: inside is where more surfaces have
-/// been entered than left [nonzero winding], along columns parallel to z, 160 across the larger
-/// side. Within 0.2 % of the volume.
-Solid UnionSolid(const TriangleMesh& mesh);
-/// MeshSolid, unless its pieces overlap by more than 0.4 % of the volume: then UnionSolid.
-/// `overlap`, where given, becomes the part of the volume that MeshSolid counts too often, or 0.
+/// Of closed pieces that may overlap, each place counted once: MeshSolid, unless more than 0.4 % of
+/// the volume is in several pieces. Then inside is where more surfaces have been entered than left
+/// [nonzero winding], along columns parallel to z, 160 across the larger side: within 0.2 % of the
+/// volume. `overlap`, where given, becomes the volume that MeshSolid counts too often [m³], or 0.
 Solid PiecesSolid(const TriangleMesh& mesh, double* overlap = nullptr);
 /// Of an object's shape, in the object's frame.
 Solid ObjectSolid(const ObjectModel& object);

@@ -42,6 +42,17 @@ TEST(Pieces, DistanceIsThatOfTheNearestPiece) {
   ASSERT_EQ(object.kind, ObjectModel::Kind::kMesh);
   const TrueSurface surface(object);
   constexpr double kFacets = 4e-5;  // facets, and the centre of mass found by columns
+  // The most that a facet's normal is off the ball's: at a corner of the widest facet.
+  double off = 0;
+  for (const Eigen::Vector3i& t : object.triangles) {
+    const Vector3d &a = object.vertices_O[t[0]], &b = object.vertices_O[t[1]];
+    const Vector3d normal = (b - a).cross(object.vertices_O[t[2]] - a).normalized();
+    double nearer = 0;
+    for (const Ball& ball : balls)
+      nearer = std::max(nearer, normal.dot((a - ball.centre).normalized()));
+    off = std::max(off, std::acos(nearer));
+  }
+  ASSERT_LT(off, 0.1);
   int outside = 0, in_one = 0, in_both = 0;
   for (int i = -9; i <= 9; ++i)
     for (int j = -6; j <= 6; ++j)
@@ -65,10 +76,9 @@ TEST(Pieces, DistanceIsThatOfTheNearestPiece) {
         in_both += inside == 2;
         if (inside > 0) continue;
         EXPECT_NEAR(found.distance, nearest, kFacets) << p.transpose();
-        // A facet spans some 4 degrees (0.0709 rad at most here); in the middle plane both balls
-        // are as near.
+        // In the middle plane both balls are as near.
         if (std::abs(p.x()) > 2e-3) {
-          EXPECT_GT(found.normal_O.dot(normal), std::cos(0.08));
+          EXPECT_GT(found.normal_O.dot(normal), std::cos(off) - 1e-5);
         }
       }
   EXPECT_GT(outside, 100);
