@@ -7,30 +7,11 @@
 #include <set>
 
 #include "core/common/nearest_name.h"
+#include "core/common/nesting_depth.h"
 #include "core/protocol/methods.h"
 
 namespace regrasp {
 namespace {
-
-/// Deepest nesting of the text, strings skipped. Needs no well-formed input.
-int Depth(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return deepest;
-}
 
 /// Parses, and finds the first key that an object holds twice (the library keeps the last,
 /// silently).
@@ -152,7 +133,7 @@ RpcLine ParseLine(std::string_view line) {
   if (const auto nul = line.find('\0'); nul != std::string_view::npos)
     return refuse(ErrorCode::kParse, fmt::format("a NUL byte at position {}", nul),
                   "send one JSON object per line, in UTF-8");
-  if (const int depth = Depth(line); depth > kMaxRequestDepth)
+  if (const int depth = NestingDepth(line); depth > kMaxRequestDepth)
     return refuse(ErrorCode::kInvalidRequest,
                   fmt::format("nested {} levels deep; at most {}", depth, kMaxRequestDepth),
                   "no method takes deeply nested parameters");
