@@ -92,12 +92,6 @@ ExitCode Merge(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
-Arg Text(const char* key, const char* flags, const char* metavar, const char* help,
-         const char* default_text = "") {
-  return {
-      .key = key, .flags = flags, .metavar = metavar, .help = help, .default_text = default_text};
-}
-
 Arg Number(const char* key, const char* flags, ArgKind kind, const char* metavar, const char* help,
            double min, double max, const char* default_text) {
   return {.key = key,
@@ -111,43 +105,44 @@ Arg Number(const char* key, const char* flags, ArgKind kind, const char* metavar
 }
 
 Arg TableFormatArg() {
-  Arg arg = Text("format", "--format", "NAME", "tables as text, markdown or latex", "text");
+  Arg arg = TextArg("format", "--format", "NAME", "tables as text, markdown or latex", "text");
   arg.values = {"text", "markdown", "latex"};
   return arg;
 }
 
 Arg OutputDirectory() {
   Arg arg =
-      Text("output", "-o,--output", "DIR", "where results go; unfinished ones go on from there");
+      TextArg("output", "-o,--output", "DIR", "where results go; unfinished ones go on from there");
   arg.required = true;
   return arg;
 }
 
 std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* noise) {
-  Arg set = Text(
+  Arg set = TextArg(
       "set", "--set", "NAME=VALUE",
       "a parameter of the daemon, as in param set; values with commas are compared; repeatable");
   set.repeated = true;
   Arg cases =
-      Text("case", "--case", "'NAME: KEY=VALUE ...'",
-           "settings to compare: object, tilt, push, turns, criterion, parameters; repeatable");
+      TextArg("case", "--case", "'NAME: KEY=VALUE ...'",
+              "settings to compare: object, tilt, push, turns, criterion, parameters; repeatable");
   cases.repeated = true;
-  Arg stepper = Text("stepper", "--stepper", "NAME", "fast, or exact: the slow reference", "fast");
+  Arg stepper =
+      TextArg("stepper", "--stepper", "NAME", "fast, or exact: the slow reference", "fast");
   stepper.values = {"fast", "exact"};
   for (const Arg& arg :
-       {Text("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
+       {TextArg("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
         Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,
                kMaxSafeInteger - kMostSeeds, "1"),
         Number("seeds", "-n,--seeds", ArgKind::kInteger, "N", "seeds, one after the other", 1,
                kMostSeeds, seeds),
-        Text("object", "--object", "NAME|FILE", "the object", "the scenario's"),
+        TextArg("object", "--object", "NAME|FILE", "the object", "the scenario's"),
         Number("tilt", "--tilt", ArgKind::kNumber, "DEG",
                "tilt of the hand: 0 palm up, 90 fingers down", -180, 180, "the scenario's"),
-        Text("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases, stepper,
-        Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        TextArg("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases, stepper,
+        TextArg("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N",
                "daemons at work; the results do not depend on it", 1, 256, "one per core"),
-        Text("shard", "--shard", "i/N", "only every N-th trial, from the i-th; join with merge"),
+        TextArg("shard", "--shard", "i/N", "only every N-th trial, from the i-th; join with merge"),
         TableFormatArg(),
         Number("precision", "--precision", ArgKind::kNumber, "P",
                "how many seeds make intervals of +-P: of shares absolute, of all else relative",
@@ -164,13 +159,14 @@ std::vector<Arg> WithoutObject(std::vector<Arg> args) {
 }
 
 std::vector<Arg> ExplorationArgs(const char* estimators) {
-  Arg criterion = Text("criterion", "--criterion", "NAME", "what is maximised", "manipulability");
+  Arg criterion =
+      TextArg("criterion", "--criterion", "NAME", "what is maximised", "manipulability");
   const auto& values = FindParam(*FindMethod("explore"), "criterion")->values;
   criterion.values.assign(values.begin(), values.end());
-  return {Text("finger", "--finger", "NAMES", "fingers, separated by commas, or all", "all"),
+  return {TextArg("finger", "--finger", "NAMES", "fingers, separated by commas, or all", "all"),
           criterion,
-          Text("estimator", "--estimator", "NAMES", "least_squares, secant, or both with a comma",
-               estimators),
+          TextArg("estimator", "--estimator", "NAMES",
+                  "least_squares, secant, or both with a comma", estimators),
           Number("rays", "--rays", ArgKind::kInteger, "N",
                  "rays of the noise-free map that success is judged by; 0: none", 0, 360, "12")};
 }
@@ -178,18 +174,18 @@ std::vector<Arg> ExplorationArgs(const char* estimators) {
 }  // namespace
 
 std::vector<CommandSpec> ExperimentCommands() {
-  Arg directories = Text("dir", "", "DIR...", "directories of the shards");
+  Arg directories = TextArg("dir", "", "DIR...", "directories of the shards");
   directories.required = directories.repeated = true;
-  Arg only_paper = Text("only-paper", "--only-paper", "",
-                        "leave out what goes beyond the paper, and the ablations");
+  Arg only_paper = TextArg("only-paper", "--only-paper", "",
+                           "leave out what goes beyond the paper, and the ablations");
   only_paper.kind = ArgKind::kFlag;
   return {
       {"experiment exploration", kGroup,
        "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
        With(ExplorationArgs("least_squares"), "50", "paper"), Experiment},
       {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
-       With({Text("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
-                  "0,0,-1"),
+       With({TextArg("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
+                     "0,0,-1"),
              Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
              Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns", -360000,
                     360000, "not used"),
@@ -202,13 +198,14 @@ std::vector<CommandSpec> ExperimentCommands() {
       {"experiment zoo", kGroup,
        "turn many objects by several gaits, paired; which does better on which", nullptr,
        WithoutObject(With(
-           {Text("objects", "--objects", "NAMES", "separated by commas; zoo: all of it", "zoo"),
-            Text("gaits", "--gaits", "NAMES",
-                 "planned, returning (to the first contact), exploring (the paper's); the first is "
-                 "what "
-                 "others are compared with",
-                 "planned,returning"),
-            Text("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
+           {TextArg("objects", "--objects", "NAMES", "separated by commas; zoo: all of it", "zoo"),
+            TextArg(
+                "gaits", "--gaits", "NAMES",
+                "planned, returning (to the first contact), exploring (the paper's); the first is "
+                "what "
+                "others are compared with",
+                "planned,returning"),
+            TextArg("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
             Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
@@ -232,9 +229,10 @@ std::vector<CommandSpec> ExperimentCommands() {
                "explorations of the ring finger with other start gradients", 0, 1000,
                "50, as in the paper"),
         Number("turns", "--turns", ArgKind::kNumber, "N", "of each rotation", 0.01, 1000, "1"),
-        Text("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
+        TextArg("finger", "--finger", "NAME", "the finger of explorations and sweep", "all"),
         Number("rays", "--rays", ArgKind::kInteger, "N", "rays of the noise-free map", 1, 360, "8"),
-        only_paper, Text("models-dir", "--models-dir", "DIR", "where models are looked for first"),
+        only_paper,
+        TextArg("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N", "daemons at work", 1, 256,
                "one per core"),
         OutputDirectory()},

@@ -33,22 +33,11 @@ ExitCode RunHand(Context& context, const Invocation& invocation) {
   return static_cast<ExitCode>(code);
 }
 
-Arg Value(std::string key, std::string flags, std::string metavar, std::string help,
-          std::string default_text = "") {
-  Arg arg;
-  arg.key = std::move(key);
-  arg.flags = std::move(flags);
-  arg.metavar = std::move(metavar);
-  arg.help = std::move(help);
-  arg.default_text = std::move(default_text);
-  return arg;
-}
-
 std::vector<Arg> WithLoadFlags(std::vector<Arg> args) {
   for (const auto& [key, help] :
        {std::pair{"inertia-from-shape", "compute the inertias that are missing or cannot be"},
         std::pair{"fill-missing-meshes", "a capsule along the link where a mesh is not there"}}) {
-    Arg flag = Value(key, std::string("--") + key, "", help);
+    Arg flag = TextArg(key, std::string("--") + key, "", help);
     flag.kind = ArgKind::kFlag;
     args.push_back(std::move(flag));
   }
@@ -58,13 +47,14 @@ std::vector<Arg> WithLoadFlags(std::vector<Arg> args) {
 }  // namespace
 
 std::vector<CommandSpec> HandCommands() {
-  Arg any = Value("file", "", "FILE", "a URDF, a scenario, or the name of a hand");
-  Arg urdf = Value("file", "", "FILE", "the hand's URDF");
-  Arg out = Value("output", "-o,--output", "NAME.toml", "the scenario; must not exist");
+  Arg any = TextArg("file", "", "FILE", "a URDF, a scenario, or the name of a hand");
+  Arg urdf = TextArg("file", "", "FILE", "the hand's URDF");
+  Arg out = TextArg("output", "-o,--output", "NAME.toml", "the scenario; must not exist");
   any.required = urdf.required = out.required = true;
   const auto number = [](std::string key, std::string metavar, std::string help,
                          std::string default_text) {
-    Arg arg = Value(key, "--" + key, std::move(metavar), std::move(help), std::move(default_text));
+    Arg arg =
+        TextArg(key, "--" + key, std::move(metavar), std::move(help), std::move(default_text));
     arg.kind = ArgKind::kNumber;
     return arg;
   };
@@ -72,7 +62,8 @@ std::vector<CommandSpec> HandCommands() {
       {"hand check", kGroup,
        "what a hand's file says: fingers, limits, fits, warnings, the stepper that suits it",
        nullptr,
-       WithLoadFlags({any, Value("output", "-o,--output", "FILE", "a picture of the hand, .png")}),
+       WithLoadFlags(
+           {any, TextArg("output", "-o,--output", "FILE", "a picture of the hand, .png")}),
        RunHand},
       {"hand new", kGroup,
        "make a scenario for a hand from its URDF alone: fingers, palm, postures of a grasp",

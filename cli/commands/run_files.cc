@@ -125,20 +125,9 @@ ExitCode Video(Context& context, const Invocation& invocation) {
   return Run(context, invocation);
 }
 
-Arg Text(std::string key, std::string flags, std::string metavar, std::string help,
-         std::string default_text = "") {
-  Arg arg;
-  arg.key = std::move(key);
-  arg.flags = std::move(flags);
-  arg.metavar = std::move(metavar);
-  arg.help = std::move(help);
-  arg.default_text = std::move(default_text);
-  return arg;
-}
-
 Arg RunArg() {
   Arg run =
-      Text("run", "", "RUN", "a run file: a path, or a name in the daemon's output directory");
+      TextArg("run", "", "RUN", "a run file: a path, or a name in the daemon's output directory");
   run.required = true;
   return run;
 }
@@ -146,10 +135,10 @@ Arg RunArg() {
 }  // namespace
 
 std::vector<CommandSpec> RunFileCommands() {
-  Arg format = Text("format", "--format", "NAME", "csv: a directory with a file per topic");
+  Arg format = TextArg("format", "--format", "NAME", "csv: a directory with a file per topic");
   format.values = {"csv", "npz", "mcap"};
   format.required = true;
-  Arg film = Text("output", "-o,--output", "FILE", "the film, .mp4");
+  Arg film = TextArg("output", "-o,--output", "FILE", "the film, .mp4");
   film.required = true;
   return {
       MethodCommand("record.start", kGroup, RecordStart, {.positional = {"file"}}),
@@ -159,24 +148,24 @@ std::vector<CommandSpec> RunFileCommands() {
        kGroup,
        "re-execute a run file and compare every recorded state",
        nullptr,
-       {RunArg(), Text("speed", "--speed", "X|max", "times real time", "max")},
+       {RunArg(), TextArg("speed", "--speed", "X|max", "times real time", "max")},
        Replay},
       {"export",
        kGroup,
        "turn a run file into CSV, NumPy arrays or a whole MCAP file",
        nullptr,
        {RunArg(), format,
-        Text("output", "-o,--output", "PATH", "where to write; must not exist",
-             "named after the run, in this directory")},
+        TextArg("output", "-o,--output", "PATH", "where to write; must not exist",
+                "named after the run, in this directory")},
        Export},
       {"video",
        kGroup,
        "film a run file: scene and curves",
        nullptr,
-       {RunArg(), film, Text("fps", "--fps", "N", "pictures per second", "25"),
-        Text("speed", "--speed", "X", "seconds of the run per second of film", "1"),
-        Text("from", "--from", "S", "begin at this simulated time", "0"),
-        Text("to", "--to", "S", "end at this simulated time", "the end of the run")},
+       {RunArg(), film, TextArg("fps", "--fps", "N", "pictures per second", "25"),
+        TextArg("speed", "--speed", "X", "seconds of the run per second of film", "1"),
+        TextArg("from", "--from", "S", "begin at this simulated time", "0"),
+        TextArg("to", "--to", "S", "end at this simulated time", "the end of the run")},
        Video},
   };
 }

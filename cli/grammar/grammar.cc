@@ -94,6 +94,17 @@ Arg WaitFlag() {
           .help = "wait until the job has ended, print its record"};
 }
 
+Arg TextArg(std::string key, std::string flags, std::string metavar, std::string help,
+            std::string default_text) {
+  Arg arg;
+  arg.key = std::move(key);
+  arg.flags = std::move(flags);
+  arg.metavar = std::move(metavar);
+  arg.help = std::move(help);
+  arg.default_text = std::move(default_text);
+  return arg;
+}
+
 CommandSpec MethodCommand(std::string_view method, std::string group, Handler run,
                           const MethodArguments& arguments) {
   const MethodSpec* spec = FindMethod(method);

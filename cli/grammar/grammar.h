@@ -61,6 +61,10 @@ struct CommandSpec {
   Handler run = nullptr;
 };
 
+/// An argument with a value, as it is typed.
+Arg TextArg(std::string key, std::string flags, std::string metavar, std::string help,
+            std::string default_text = "");
+
 /// A command that sends `method`, its arguments made from the table. `positional`: parameters
 /// without
 /// `--`; `hidden`: parameters that this command does not offer; `extra`: arguments of its own.
