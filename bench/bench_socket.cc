@@ -3,7 +3,6 @@
 //   build/release/bin/bench_socket [COUNT]
 
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "bench/connect.h"
 #include "daemon/config/config.h"
 #include "daemon/daemon.h"
 
@@ -23,13 +23,7 @@ namespace {
 
 class Client {
  public:
-  explicit Client(const std::string& path) : fd_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::snprintf(address.sun_path, sizeof address.sun_path, "%s", path.c_str());
-    if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      throw std::runtime_error("cannot connect to " + path);
-  }
+  explicit Client(const std::string& path) : fd_(regrasp::Connect(path)) {}
   ~Client() { ::close(fd_); }
 
   /// Seconds from the request to the end of its answer.

@@ -7,7 +7,6 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +22,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "bench/connect.h"
 
 namespace {
 
@@ -61,13 +62,7 @@ std::string Line(std::uint64_t id, std::string_view method, std::string_view par
 
 class Client {
  public:
-  explicit Client(const std::string& path) : fd_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::snprintf(address.sun_path, sizeof address.sun_path, "%s", path.c_str());
-    if (::connect(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      throw std::runtime_error("cannot connect to " + path);
-  }
+  explicit Client(const std::string& path) : fd_(regrasp::Connect(path)) {}
   Client(Client&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   ~Client() {
     if (fd_ >= 0) ::close(fd_);
