@@ -35,6 +35,8 @@ std::optional<EventLook> LookOfEvent(const Event& event) {
       return EventLook{"noise changed", Marker::kSquare};
     case EventKind::kParameter:
       return EventLook{"parameter changed", Marker::kDiamond};
+    case EventKind::kFriction:
+      return EventLook{"friction felt", Marker::kPlus};
     case EventKind::kPush:
       return EventLook{"push", Marker::kUp};
     case EventKind::kReset:

@@ -26,7 +26,7 @@ void Session::Impl::FeelFriction() {
   felt_friction.Update(estimator.estimate(), tasks, controller.commanded_forces(), dt);
   if (known || !felt_friction.known()) return;
   CountOn();
-  log.Emit(tick, EventKind::kParameter, -1, felt_friction.felt(),
+  log.Emit(tick, EventKind::kFriction, -1, felt_friction.felt(),
            "friction felt: %.2f; the controller counts on %.2f", felt_friction.felt(),
            control.friction_estimate);
 }

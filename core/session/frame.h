@@ -117,6 +117,7 @@ enum class EventKind : std::uint8_t {
   kReset,
   kStandIn,
   kRegrasp,
+  kFriction,  ///< felt by sliding fingers; value = |f_t| / f_n
 };
 std::string_view Name(EventKind kind);  ///< "state", "job_started", ...
 

@@ -191,6 +191,8 @@ std::string_view Name(EventKind kind) {
       return "stand_in";
     case EventKind::kRegrasp:
       return "regrasp";
+    case EventKind::kFriction:
+      return "friction";
   }
   return "";
 }

@@ -78,7 +78,7 @@ TEST(Rotate, TurnsTheObjectOnceAndGoesOnHolding) {
   EXPECT_EQ(session.state(), SessionState::kRotating);
   const JobRecord job = Finish(session, 120);
   ASSERT_EQ(job.state, JobState::kDone) << job.error;
-  // The bounds for one motion (5 degrees, 4 mm); the reference is followed by an
+  // The bounds for one motion (5 degrees, 4 mm); the reference is followed by an
   // integrating controller, so that a whole turn has the same error.
   EXPECT_NEAR(job.rotate.angle_rad, 2 * M_PI, 5 * kDegree);
   EXPECT_LT(job.rotate.max_position_error_m, 0.004);

@@ -177,6 +177,21 @@ TEST(Session, EachFingerExploresUphillWithoutDrop) {
   }
 }
 
+// What the controller finds out is told as such: nobody has changed a parameter.
+TEST(Session, FrictionThatIsFeltIsToldOnceAndIsNoChangeOfAParameter) {
+  SessionRun run;
+  ASSERT_TRUE(run.Grasp());
+  ASSERT_EQ(run.Explore(3).kind, Kind::kAllowed);
+  ASSERT_TRUE(run.FinishJob(30));
+  EXPECT_EQ(run.Count(EventKind::kFriction), 1);
+  EXPECT_EQ(run.Count(EventKind::kParameter), 0);
+  for (const Event& event : run.events) {
+    if (event.kind != EventKind::kFriction) continue;
+    EXPECT_GT(event.value, 0.5);  // true: 0.8, up to 1.13 along the pyramid's diagonals
+    EXPECT_LT(event.value, 1.2);
+  }
+}
+
 TEST(Session, ProgressOfAnExplorationIsAgainstWhatWasAskedFor) {
   SessionRun run;
   ASSERT_TRUE(run.Grasp());
