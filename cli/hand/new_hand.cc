@@ -8,9 +8,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include "cli/hand/hand_command.h"
 #include "cli/hand/trial.h"
+#include "core/common/finger_set.h"
 #include "core/files/draft.h"
 #include "core/posture/grasp_search.h"
 #include "core/posture/hand_guess.h"
@@ -70,6 +72,17 @@ struct Found {
   WayIn way;
   LoadedScenario model;
   HoldTrial trial;
+  StepperChoice choice;
+
+  bool any() const { return !model.hand.links.empty(); }
+  bool Good() const { return any() && trial.held && way.stuck < 0; }
+  bool Better(const Found& other) const {
+    if (!any() || !other.any()) return any();
+    const auto rank = [](const Found& f) {
+      return std::tuple(f.Good(), f.trial.held, f.trial.held ? f.trial.margin_n : 0.0);
+    };
+    return rank(*this) > rank(other);
+  }
 };
 
 class Maker {
@@ -90,14 +103,13 @@ class Maker {
   Answer Make() {
     CheckOutput();
     Read();
-    const std::vector<BallGrasp> grasps = FindGrasps(hand_, search_);
-    if (grasps.empty())
+    Search();
+    if (!best_.any())
       throw Failure(ExitCode::kFailed,
-                    fmt::format("{}: no posture found in which every fingertip touches a ball of "
-                                "{:g} mm",
-                                options_.file, size_mm_),
+                    fmt::format("{}: no posture found in which {} fingertips touch a ball of {:g} "
+                                "mm",
+                                options_.file, std::min(hand_.num_fingers(), 3), size_mm_),
                     "regrasp hand new FILE -o NAME.toml --object-size MM, larger or smaller");
-    Choose(grasps);
     Write();
     return Tell();
   }
@@ -131,10 +143,54 @@ class Maker {
     hand_.name = out_.stem().string();
   }
 
-  /// The best grasps get a way in and a trial; the first that holds is taken, else the best.
-  void Choose(const std::vector<BallGrasp>& grasps) {
+  /// With every finger; where they cannot all touch and hold, with one or two left out.
+  void Search() {
+    const HandLayout whole = guess_.layout;
+    const HandModel all = hand_;
+    const int n = all.num_fingers();
+    for (int out = 0; out <= 2 && !best_.Good() && (out == 0 || n - out >= 3); ++out)
+      for (int a = 0; a < n; ++a)
+        for (int b = a; b < n; ++b) {
+          if (out == 0 ? a + b > 0 : (b == a) != (out == 1)) continue;
+          const HandLayout layout = Without(all, whole, out == 0 ? FingerSet{} : FingerSet{a, b});
+          hand_ = LoadHand(urdf_, layout, options_.load());
+          hand_.name = out_.stem().string();
+          const Found found = Choose(FindGrasps(hand_, search_));
+          if (!found.Better(best_)) continue;
+          best_ = found;
+          guess_.layout = layout;
+        }
+    hand_ = best_.model.hand;
+    for (const HandLayout::Finger& finger : whole.fingers)
+      if (std::ranges::none_of(guess_.layout.fingers,
+                               [&](const auto& kept) { return kept.name == finger.name; }))
+        left_out_.push_back(finger.name);
+  }
+
+  /// The layout without some fingers; the joints that move nothing else are locked, stretched.
+  static HandLayout Without(const HandModel& hand, HandLayout layout, FingerSet out) {
+    for (int f = hand.num_fingers() - 1; f >= 0; --f) {
+      if (!out.contains(f)) continue;
+      layout.fingers.erase(layout.fingers.begin() + f);
+      for (const int j : hand.fingers[static_cast<std::size_t>(f)].joints) {
+        bool shared = false;
+        for (int other = 0; other < hand.num_fingers(); ++other)
+          if (!out.contains(other))
+            shared = shared || std::ranges::count(
+                                   hand.fingers[static_cast<std::size_t>(other)].joints, j) > 0;
+        const Joint& joint = hand.joints[static_cast<std::size_t>(j)];
+        if (!shared) layout.locked[joint.name] = std::clamp(0.0, joint.lower, joint.upper);
+      }
+    }
+    return layout;
+  }
+
+  /// The best grasps get a way in and a trial; the one that holds with the most margin is taken,
+  /// else the first.
+  Found Choose(const std::vector<BallGrasp>& grasps) {
     RandomStream random(search_.seed, 2);
     const std::size_t count = std::min<std::size_t>(grasps.size(), 4);
+    Found best;
     for (std::size_t k = 0; k < count; ++k) {
       progress_.Show("finding a way in, trying it", static_cast<double>(k) / 4);
       Found found;
@@ -150,16 +206,11 @@ class Maker {
       scenario.gravity_W = gravity_W_;
       found.model.hand = hand_;
       found.model.object = LoadObject(scenario.object, ModelSearchPath());
-      const StepperChoice choice = ChooseStepper(found.model, {});
-      found.trial = TryToHold(found.model, choice.stepper, search_.seed, kHold);
-      const bool better =
-          k == 0 || best_.model.hand.links.empty() ||
-          (found.trial.held && (!best_.trial.held || found.trial.margin_n > best_.trial.margin_n));
-      if (better) {
-        best_ = found;
-        choice_ = choice;
-      }
+      found.choice = ChooseStepper(found.model, {});
+      found.trial = TryToHold(found.model, found.choice.stepper, search_.seed, kHold);
+      if (found.Better(best)) best = found;
     }
+    return best;
   }
 
   /// The URDF as the scenario names it: nothing where it stands beside it under the same name.
@@ -210,6 +261,9 @@ class Maker {
       remarks.push_back(
           "no finger opposes the others: the fingertips cannot hold the ball against "
           "every small push");
+    for (const std::string& name : left_out_)
+      remarks.push_back(fmt::format(
+          "{} is left out and locked: it cannot touch the ball together with the others", name));
     if (hand_.num_fingers() < 3)
       remarks.push_back("two fingers: `grasp` needs three contacts");
     else if (hand_.num_fingers() == 3)
@@ -236,7 +290,7 @@ class Maker {
 
   Answer Tell() const {
     const BallGrasp& g = best_.grasp;
-    const char* stepper = choice_.stepper == Stepper::kFast ? "fast" : "exact";
+    const char* stepper = best_.choice.stepper == Stepper::kFast ? "fast" : "exact";
     const std::vector<std::string> remarks = Remarks();
     Answer answer;
     Json fingers = Json::array();
@@ -267,7 +321,7 @@ class Maker {
                    {"hold_end", best_.trial.end},
                    {"moved_m", best_.trial.moved_m},
                    {"stepper", stepper},
-                   {"stepper_reason", choice_.reason},
+                   {"stepper_reason", best_.choice.reason},
                    {"remarks", remarks},
                    {"notes", guess_.notes}};
     answer.text = fmt::format(
@@ -278,7 +332,7 @@ class Maker {
             ? fmt::format("tried: holds {} for {:g} s, moved {:.2f} mm",
                           best_.model.scenario.object, kHold, 1e3 * best_.trial.moved_m)
             : "tried: does not hold",
-        stepper, choice_.reason);
+        stepper, best_.choice.reason);
     for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
     answer.text += fmt::format("\n  next: regrasp up --hand {}", out_.string());
     return answer;
@@ -292,9 +346,9 @@ class Maker {
   GraspSearch search_;
   HandGuess guess_;
   HandModel hand_;
+  std::vector<std::string> left_out_;  // names of fingers
   ModelReport report_;
   Found best_;
-  StepperChoice choice_;
 };
 
 }  // namespace

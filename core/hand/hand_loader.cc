@@ -47,10 +47,7 @@ class HandReader {
     Number();
     for (std::size_t f = 0; f < layout_.fingers.size(); ++f) FindFingertip(f);
     problems_.ThrowIfAny();
-    if (!undamped_.empty())
-      Warn(0, "",
-           fmt::format("<dynamics damping> is missing for {} joints ({}); {:g} N m s/rad is taken",
-                       undamped_.size(), fmt::join(undamped_, ", "), layout_.damping));
+    TellDefaults();
     return std::move(hand_);
   }
 
@@ -68,8 +65,28 @@ class HandReader {
     if (report_) report_->warnings.push_back({problems_.file(), line, element, std::move(text)});
   }
 
+  void TellDefaults() {
+    const auto tell = [&](const std::vector<std::string>& joints, const char* what, double taken,
+                          const char* unit) {
+      if (!joints.empty())
+        Warn(0, "",
+             fmt::format("{} for {} joints ({}); {:g} {} is taken", what, joints.size(),
+                         fmt::join(joints, ", "), taken, unit));
+    };
+    tell(undamped_, "<dynamics damping> is missing", layout_.damping, "N m s/rad");
+    tell(raised_, "<dynamics damping> is less than the scenario's least", layout_.least_damping,
+         "N m s/rad");
+    tell(unpowered_, "<limit> effort is 0", kDefaultEffort, "N m");
+  }
+
+  bool HasRounded(int link) const {
+    return std::ranges::any_of(LinkAt(link).collisions, [](const UrdfCollision& c) {
+      return c.geometry.kind != UrdfGeometry::Kind::kBox;
+    });
+  }
+
   /// The URDF links whose shapes may be fingertips: each tip link, or where it is a frame without
-  /// shape, all that it is fixed to.
+  /// shape, all that it is fixed to. Boxes count where there is nothing rounded.
   void FindTips() {
     for (const auto& finger : layout_.fingers) {
       const int tip = file_.FindLink(finger.tip_link);
@@ -79,7 +96,9 @@ class HandReader {
       else
         tree_.AddBodyOf(tip, &group);
       tip_groups_.push_back(group);
-      tips_.insert(group.begin(), group.end());
+      const bool rounded = std::ranges::any_of(group, [&](int l) { return HasRounded(l); });
+      for (const int l : group)
+        if (!rounded || HasRounded(l)) tips_.insert(l);
     }
   }
 
@@ -147,8 +166,16 @@ class HandReader {
       joint.upper = 2 * M_PI;
     }
     joint.effort = in.effort;
+    if (in.effort == 0 && !in.mimic) {
+      joint.effort = kDefaultEffort;
+      unpowered_.push_back(in.name);
+    }
     joint.armature = layout_.armature;
     joint.damping = in.damping.value_or(layout_.damping);
+    if (joint.damping < layout_.least_damping) {
+      joint.damping = layout_.least_damping;
+      raised_.push_back(in.name);
+    }
     if (whole_turn)
       Warn(in.line, element, "a continuous joint is kept within half a turn to either side");
     if (!in.damping) undamped_.push_back(in.name);
@@ -302,9 +329,8 @@ class HandReader {
     }
     if (best < 0) {
       problems_.Add(line_of_link_[static_cast<std::size_t>(finger.tip_link)],
-                    "finger \"{}\": tip {} must have a <collision> that is a cylinder (read as a "
-                    "capsule), a sphere or a mesh",
-                    layout.name, LinkElement(link.name));
+                    "finger \"{}\": tip {} must have a <collision>", layout.name,
+                    LinkElement(link.name));
       return;
     }
     std::rotate(link.shapes.begin(), link.shapes.begin() + best, link.shapes.begin() + best + 1);
@@ -327,7 +353,7 @@ class HandReader {
   std::vector<std::vector<int>> shape_origin_;  // by link and shape: URDF link
   std::vector<std::set<int>> tip_groups_;       // by finger: URDF links of its fingertip's shapes
   std::set<int> tips_;
-  std::vector<std::string> undamped_;
+  std::vector<std::string> undamped_, raised_, unpowered_;  // names of joints, for warnings
 };
 
 }  // namespace

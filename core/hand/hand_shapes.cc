@@ -5,6 +5,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/hand/primitive_mesh.h"
 #include "core/hand/shape_fit.h"
 #include "core/hand/urdf_values.h"
 
@@ -22,6 +23,17 @@ void Pose(const Isometry3d& X, Shape* shape) {
   shape->X_LB = X * shape->X_LB;
 }
 
+/// Of a link that has boxes only, the one farthest from its joint; null of any other.
+const UrdfCollision* FarthestIfBoxes(const UrdfLink& in) {
+  const UrdfCollision* farthest = nullptr;
+  for (const UrdfCollision& c : in.collisions) {
+    if (c.geometry.kind != UrdfGeometry::Kind::kBox) return nullptr;
+    if (farthest == nullptr || c.X_LG.translation().norm() > farthest->X_LG.translation().norm())
+      farthest = &c;
+  }
+  return farthest;
+}
+
 bool IsFile(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
@@ -36,6 +48,7 @@ void HandShapes::Warn(int line, const UrdfLink& in, std::string text) {
 
 std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip) {
   std::vector<Shape> shapes;
+  const UrdfCollision* tip_box = fingertip ? FarthestIfBoxes(in) : nullptr;
   for (const UrdfCollision& collision : in.collisions) {
     const Isometry3d X = X_LG * collision.X_LG;
     const UrdfGeometry& geometry = collision.geometry;
@@ -51,6 +64,12 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
         shape.b_L = X * Vector3d(0, 0, geometry.length / 2);
         break;
       case UrdfGeometry::Kind::kBox:
+        if (&collision == tip_box) {
+          TriangleMesh box = BoxMesh(geometry.size);
+          for (Vector3d& v : box.vertices) v = X * v;
+          shape = Fitted(in, geometry, box, "<box>", true);
+          break;
+        }
         shape.kind = Shape::Kind::kBox;
         shape.X_LB = X;
         shape.half_extents = geometry.size / 2;
@@ -128,9 +147,9 @@ Shape HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const
     Pose(X * in.collisions.front().X_LG.inverse(), &shape);
     return shape;
   }
-  FittedShape fit;
+  TriangleMesh posed;
   try {
-    TriangleMesh posed = *Mesh(file, geometry.scale);
+    posed = *Mesh(file, geometry.scale);
     Eigen::AlignedBox3d box;
     for (Vector3d& v : posed.vertices) {
       v = X * v;
@@ -143,21 +162,28 @@ Shape HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const
                       size < 1000 * kLargestLink
                           ? "; if the file is in millimetres: scale=\"0.001 0.001 0.001\""
                           : ""));
-    const Vector3d middle = box.center();
-    const Vector3d toward =
-        middle.norm() > 1e-3 ? Vector3d(middle.normalized()) : Vector3d::UnitZ();
-    fit = fingertip ? FitFingertip(posed, toward) : FitShape(posed);
+    return Fitted(in, geometry, posed, file.string(), fingertip);
   } catch (const ModelError& error) {
     problems_->Add(geometry.line, "{}: {}", LinkElement(in.name), error.what());
     return shape;
   }
+}
+
+Shape HandShapes::Fitted(const UrdfLink& in, const UrdfGeometry& geometry,
+                         const TriangleMesh& posed, const std::string& name, bool fingertip) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : posed.vertices) box.extend(v);
+  const Vector3d middle = box.center();
+  const Vector3d toward = middle.norm() > 1e-3 ? Vector3d(middle.normalized()) : Vector3d::UnitZ();
+  const FittedShape fit = fingertip ? FitFingertip(posed, toward) : FitShape(posed);
   if (report_)
-    report_->fits.push_back({in.name, file.string(), fit.kind, fit.error_m, fit.rms_m, fingertip});
+    report_->fits.push_back({in.name, name, fit.kind, fit.error_m, fit.rms_m, fingertip});
   if (fingertip && fit.error_m > kGoodFit)
     Warn(geometry.line, in,
-         fmt::format("the fingertip's {} differs from its mesh by up to {:.2g} mm (rms {:.2g} mm); "
-                     "within 1 mm contacts would be those of the mesh",
-                     fit.kind, 1e3 * fit.error_m, 1e3 * fit.rms_m));
+         fmt::format("the fingertip's {} differs from its {} by up to {:.2g} mm (rms {:.2g} mm); "
+                     "within 1 mm contacts would be those of the {}",
+                     fit.kind, name == "<box>" ? "box" : "mesh", 1e3 * fit.error_m, 1e3 * fit.rms_m,
+                     name == "<box>" ? "box" : "mesh"));
   return fit.shape;
 }
 

@@ -21,14 +21,16 @@ class HandShapes {
              ModelReport* report)
       : file_(file), options_(options), problems_(problems), report_(report) {}
 
-  /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh is
-  /// fitted by the capsule or sphere that its far end needs, else by what comes nearest to all of
-  /// it.
+  /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh, or
+  /// where there are boxes only the farthest of them, is fitted by the capsule or sphere that its
+  /// far end needs; else a mesh is fitted by what comes nearest to all of it.
   std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip);
 
  private:
   Shape OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
                bool fingertip);
+  Shape Fitted(const UrdfLink& in, const UrdfGeometry& geometry, const TriangleMesh& posed,
+               const std::string& name, bool fingertip);
   /// The file named, or with fill_missing_meshes one of its name in a directory beside it; empty
   /// where there is none.
   std::filesystem::path Find(const UrdfLink& in, const UrdfGeometry& geometry);

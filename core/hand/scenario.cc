@@ -63,6 +63,8 @@ HandLayout ReadLayout(const TomlFile& file) {
   layout.armature = file.Number(root, "armature_kg_m2", 0, 0.1);
   if (const toml::node* damping = root.get("damping_nm_s_rad"))
     layout.damping = file.Number(*damping, "damping_nm_s_rad", 0, 10);
+  if (const toml::node* least = root.get("least_damping_nm_s_rad"))
+    layout.least_damping = file.Number(*least, "least_damping_nm_s_rad", 0, 10);
   ReadFingers(file, &layout);
   if (root.contains("palm")) {
     const toml::table& palm = file.Table(root, "palm");
@@ -153,9 +155,10 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
         Beside(urdf_file).string(), urdf_file.string(), Beside(urdf_file).string()));
   const TomlFile file(toml_file);
   const toml::table& root = file.root();
-  file.CheckKeys(root, {"object", "gravity_m_s2", "armature_kg_m2", "object_pose", "finger",
-                        "q_preshape_deg", "q_closed_deg", "palm", "locked_deg", "coupled",
-                        "damping_nm_s_rad", "inertia_from_shape", "fill_missing_meshes", "urdf"});
+  file.CheckKeys(
+      root, {"object", "gravity_m_s2", "armature_kg_m2", "object_pose", "finger", "q_preshape_deg",
+             "q_closed_deg", "palm", "locked_deg", "coupled", "damping_nm_s_rad",
+             "least_damping_nm_s_rad", "inertia_from_shape", "fill_missing_meshes", "urdf"});
   LoadedScenario loaded;
   Scenario& scenario = loaded.scenario;
   scenario.object = file.Text(root, "object");

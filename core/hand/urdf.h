@@ -26,6 +26,10 @@ namespace regrasp {
 /// hands use. Without any, a hand shakes off what it holds.
 inline constexpr double kDefaultDamping = 0.05;
 
+/// Effort of a joint whose <limit> effort is 0, as exporters of CAD programs leave it [N m]: what
+/// public models of small hands have.
+inline constexpr double kDefaultEffort = 1;
+
 /// What a URDF cannot say about a hand.
 struct HandLayout {
   struct Finger {
@@ -47,6 +51,7 @@ struct HandLayout {
   };
   std::map<std::string, Coupling> coupled;
   double damping = kDefaultDamping;  ///< where the file says none [N m s/rad]
+  double least_damping = 0;          ///< smaller ones of the file are raised to it [N m s/rad]
 };
 
 /// Loads and checks a hand. Driven joints are numbered finger by finger in the layout's order, root

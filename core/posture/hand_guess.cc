@@ -37,6 +37,7 @@ class Guess {
     for (Chain& chain : chains_) Measure(&chain);
     FindPalm();
     Name();
+    SuggestDamping();
     return guess_;
   }
 
@@ -66,11 +67,12 @@ class Guess {
                                [&](int j) { return Moves(j) || MovesMore(joint(j).child); });
   }
 
-  /// The link fixed to `l` whose rounded shapes reach farthest from `p` [m]; -1 without any.
-  int FarthestTip(int l, const Vector3d& p, double* reach) const {
+  /// The link fixed to `l` whose rounded shapes, or with `boxes` any, reach farthest from `p` [m];
+  /// -1 without any.
+  int FarthestTip(int l, const Vector3d& p, bool boxes, double* reach) const {
     int best = -1;
     for (const UrdfCollision& c : link(l).collisions) {
-      if (c.geometry.kind == UrdfGeometry::Kind::kBox) continue;
+      if (c.geometry.kind == UrdfGeometry::Kind::kBox && !boxes) continue;
       const double far = (pose(l) * c.X_LG.translation() - p).norm();
       if (best >= 0 && far <= *reach) continue;
       best = l;
@@ -78,7 +80,7 @@ class Guess {
     }
     for (const int j : link(l).child_joints) {
       const double before = *reach;
-      const int other = FarthestTip(joint(j).child, p, reach);
+      const int other = FarthestTip(joint(j).child, p, boxes, reach);
       if (other >= 0 && (best < 0 || *reach > before)) best = other;
     }
     return best;
@@ -92,7 +94,8 @@ class Guess {
       if (!Moves(j) || MovesMore(end)) continue;
       double reach = 0;
       Chain chain;
-      chain.tip = FarthestTip(end, pose(end).translation(), &reach);
+      for (const bool boxes : {false, true})
+        if (chain.tip < 0) chain.tip = FarthestTip(end, pose(end).translation(), boxes, &reach);
       if (chain.tip < 0) {
         bare.push_back(link(end).name);
         continue;
@@ -102,12 +105,11 @@ class Guess {
       chains_.push_back(chain);
     }
     if (!bare.empty())
-      guess_.notes.push_back(fmt::format(
-          "no finger ends in {}: no <collision> that can be a fingertip", fmt::join(bare, ", ")));
+      guess_.notes.push_back(
+          fmt::format("no finger ends in {}: no <collision>", fmt::join(bare, ", ")));
     if (chains_.size() < 2 || chains_.size() > std::size_t{kMaxFingers})
       problems_.Add(0,
-                    "{} chains end in a link with a <collision> that is a cylinder, a sphere or a "
-                    "mesh: the fingers; a hand has 2 .. {}{}",
+                    "{} chains end in a link with a <collision>: the fingers; a hand has 2 .. {}{}",
                     chains_.size(), kMaxFingers,
                     bare.empty() ? "" : fmt::format("; without one: {}", fmt::join(bare, ", ")));
     problems_.ThrowIfAny();
@@ -256,6 +258,30 @@ class Guess {
       guess_.notes.push_back(fmt::format("finger {}: joints {}; tip {}", name,
                                          fmt::join(joints, ", "), link(chains_[f].tip).name));
     }
+  }
+
+  /// Damping by the fingers' length. The object's pose is known late (control.pose_filter_s), so
+  /// that holding it in place takes damping away, position_stiffness * pose_filter_s = 10 N s/m;
+  /// three fingers must give back more, here twice as much, at their tips.
+  void SuggestDamping() {
+    constexpr double kTipDamping = 2 * 10.0 / 3;  // [N s/m]
+    constexpr double kTooLittle = 0.01;           // [N m s/rad]: drops what it holds
+    double reach = 0;
+    for (const Chain& c : chains_) reach = std::max(reach, (c.p_tip - c.p_base).norm());
+    HandLayout& layout = guess_.layout;
+    layout.damping = std::max(kDefaultDamping, 1e-3 * std::ceil(1e3 * kTipDamping * reach * reach));
+    bool missing = false;
+    std::vector<std::string> weak;
+    for (const Chain& c : chains_)
+      for (const int j : c.joints) {
+        missing = missing || !joint(j).damping;
+        if (joint(j).damping && *joint(j).damping < kTooLittle) weak.push_back(joint(j).name);
+      }
+    if (!weak.empty()) layout.least_damping = layout.damping;
+    if (missing || !weak.empty())
+      guess_.notes.push_back(
+          fmt::format("damping: {:g} N m s/rad {}, for fingers of {:.0f} mm", layout.damping,
+                      weak.empty() ? "where the file says none" : "at least", 1e3 * reach));
   }
 
   Problems problems_;

@@ -43,6 +43,8 @@ std::string WriteScenario(const ScenarioText& text, const HandModel& hand) {
   out += fmt::format("gravity_m_s2 = {}\n", Triple(scenario.gravity_W, 6));
   out += fmt::format("armature_kg_m2 = {:g}\ndamping_nm_s_rad = {:g}\n", layout.armature,
                      layout.damping);
+  if (layout.least_damping > 0)
+    out += fmt::format("least_damping_nm_s_rad = {:g}\n", layout.least_damping);
   if (text.options.inertia_from_shape) out += "inertia_from_shape = true\n";
   if (text.options.fill_missing_meshes) out += "fill_missing_meshes = true\n";
   const Vector3d turn = RotationVector(Quaterniond(layout.X_HR.linear()));

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import unittest
 
 from harness import Case
@@ -91,14 +92,31 @@ class Hand(Case):
         self.assertEqual(self.check("shadow")["warnings"], [])
 
     def test_everything_that_is_wrong_is_told_at_once(self):
-        text = hand(3, effort=0).replace('radius="0.008"', 'radius="0,008"', 1)
+        text = hand(3, effort=-1).replace('radius="0.008"', 'radius="0,008"', 1)
         error = self.refused(1, "hand", "check", self.write("bad.urdf", text))
         self.assertIn("0,008", error)
-        error = self.refused(1, "hand", "check", self.write("weak.urdf", hand(3, effort=0)))
-        self.assertEqual(error.count("effort [N m] = 0; must be > 0"), 9)
+        error = self.refused(1, "hand", "check", self.write("weak.urdf", hand(3, effort=-1)))
+        self.assertEqual(error.count("effort [N m] = -1; must be >= 0"), 9)
         error = self.refused(1, "hand", "new", self.dir / "weak.urdf", "-o", self.dir / "weak.toml")
-        self.assertEqual(error.count("effort [N m] = 0; must be > 0"), 9)
+        self.assertEqual(error.count("effort [N m] = -1; must be >= 0"), 9)
         self.assertFalse((self.dir / "weak.toml").exists())
+
+    def test_an_effort_that_was_not_filled_in_is_taken_from_the_default(self):
+        told = self.check(self.write("idle.urdf", hand(3, effort=0)))
+        self.assertIn("<limit> effort is 0 for 9 joints", "\n".join(told["warnings"]))
+        self.assertEqual({joint["effort_nm"] for joint in told["joints"]}, {1})
+
+    def test_fingers_that_cannot_touch_are_left_out(self):
+        # One finger of four stands half a metre away.
+        far = re.sub(r'(<child link="arm4a"/><origin xyz=)"[^"]*"', r'\1"0 -0.5 0"', hand(4))
+        self.assertIn("0 -0.5 0", far)
+        done = self.regrasp("--json", "hand", "new", self.write("far.urdf", far), "-o", self.dir / "far.toml")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        told = json.loads(done.stdout)
+        self.assertEqual([finger["name"] for finger in told["fingers"]], ["finger1", "finger2", "finger3"])
+        self.assertTrue(told["held"])
+        self.assertIn("finger4 is left out and locked", "\n".join(told["remarks"]))
+        self.assertIn("arm4_near", (self.dir / "far.toml").read_text().split("[locked_deg]")[1])
 
     def test_usage(self):
         four = self.write("four.urdf", hand(4))

@@ -89,7 +89,7 @@ TEST_F(MalformedTest, Hands) {
       {"lower=\"0\"", "lower=\"2\"", {"mini.urdf:13", "lower = 2", "less than upper = 1.5"}},
       {"lower=\"0\"", "lower=\"-180\"", {"mini.urdf:13", "-180", "-3.14159 .. 3.14159"}},
       {"effort=\"2\" ", "", {"mini.urdf:13", "effort is missing"}},
-      {"effort=\"2\"", "effort=\"0\"", {"mini.urdf:13", "effort [N m] = 0", "> 0"}},
+      {"effort=\"2\"", "effort=\"-2\"", {"mini.urdf:13", "effort [N m] = -2", ">= 0"}},
       {"damping=\"0.05\"", "damping=\"-0.05\"", {"mini.urdf:13", "damping = -0.05", ">= 0"}},
       {"<axis xyz=\"2 0 0\"/>",
        "<axis xyz=\"2 0 0\"/><mimic joint=\"C\"/>",
@@ -185,7 +185,7 @@ TEST_F(MalformedTest, TellsAllMistakesOfAFileAtOnce) {
   text = Replaced(text, "<axis xyz=\"2 0 0\"/>", "<axis xyz=\"a b c\"/>");
   Write("hands/mini.urdf", text);
   ExpectAll({"3 errors", "mini.urdf:4", "mini.urdf:6", "mini.urdf:13"});
-  text = Replaced(kHandUrdf, "effort=\"2\"", "effort=\"0\"");
+  text = Replaced(kHandUrdf, "effort=\"2\"", "effort=\"-2\"");
   text = Replaced(text, "lower=\"-0.5\"", "lower=\"5\"");
   Write("hands/mini.urdf", text);
   ExpectAll({"3 errors", "mini.urdf:13", "mini.urdf:15", "effort", "lower [rad] = 5"});

@@ -92,13 +92,61 @@ TEST_F(PostureTest, NamesFingersByWhatTheFileCallsThem) {
   EXPECT_EQ(names, (std::vector<std::string>{"first", "middle", "ring", "little", "thumb"}));
 }
 
-TEST_F(PostureTest, TakesAFingertipThatIsABoxForNone) {
+TEST_F(PostureTest, AFingertipOfBoxesIsTheRoundedEndOfTheFarthest) {
   std::string text = RadialHandUrdf(4);
-  const std::size_t at = text.find("<cylinder", text.find("arm2c"));
-  text.replace(at, text.find("/>", at) - at, "<box size=\"0.01 0.01 0.02\"");
-  const HandGuess guess = GuessHand(Write("hand.urdf", text));
-  EXPECT_EQ(guess.layout.fingers.size(), 3u);
-  EXPECT_NE(guess.notes.front().find("arm2c"), std::string::npos);
+  const std::size_t at = text.find("<collision>", text.find("name=\"arm2c\""));
+  const std::size_t end = text.find("</collision>", at) + std::string("</collision>").size();
+  const auto box = [](double z, double length) {
+    return fmt::format(
+        "<collision><origin xyz=\"0 0 {}\"/><geometry><box size=\"0.01 0.01 {}\"/></geometry>"
+        "</collision>",
+        z, length);
+  };
+  text.replace(at, end - at, box(0.01, 0.02) + box(0.03, 0.02));
+  const fs::path file = Write("hand.urdf", text);
+  const HandGuess guess = GuessHand(file);
+  ASSERT_EQ(guess.layout.fingers.size(), 4u);
+  ModelReport report;
+  const HandModel hand = LoadHand(file, guess.layout, {}, &report);
+  const Finger& finger = hand.fingers[1];
+  // About half as wide as the box, and as far out: 40 mm. The corners pull it out, by less than
+  // they stick out of it: (sqrt(2) - 1) 5 mm.
+  EXPECT_NEAR(finger.tip_radius, 0.005, 2e-3);
+  EXPECT_NEAR(finger.p_LF.z() + finger.tip_radius, 0.04, 2e-3);
+  EXPECT_NEAR(finger.p_LF.head<2>().norm(), 0, 1e-4);
+  const Link& tip = hand.links[static_cast<std::size_t>(finger.tip_link)];
+  ASSERT_EQ(tip.shapes.size(), 2u);
+  EXPECT_EQ(tip.shapes[1].kind, Shape::Kind::kBox) << "the nearer one stays";
+  // A box's corners are far from any capsule, and that is told.
+  ASSERT_EQ(report.fits.size(), 1u);
+  EXPECT_GT(report.fits[0].error_m, 1e-3);
+  EXPECT_NE(report.warnings.front().text.find("differs from its box"), std::string::npos);
+}
+
+TEST_F(PostureTest, SuggestsDampingByTheFingersLengthWhereTheFileLacksIt) {
+  // 110 mm from the first joint, 88 mm of them to the farthest shape's middle.
+  EXPECT_NEAR(GuessHand(Write("hand.urdf", RadialHandUrdf(4))).layout.damping, 0.05, 1e-12);
+  std::string longer = RadialHandUrdf(4);
+  for (std::size_t at = longer.find("0 0 0.05\""); at != std::string::npos;
+       at = longer.find("0 0 0.05\"", at + 1))
+    longer.replace(at, 8, "0 0 0.15");
+  const HandGuess guess = GuessHand(Write("long.urdf", longer));
+  EXPECT_GT(guess.layout.damping, 0.2);
+  EXPECT_EQ(guess.layout.least_damping, 0) << "the file says nothing that could be too little";
+
+  std::string weak = RadialHandUrdf(4);
+  const std::string limit = "effort=\"1\" velocity=\"5\"/>";
+  for (std::size_t at = weak.find(limit); at != std::string::npos; at = weak.find(limit, at + 1))
+    weak.insert(at + limit.size(), "<dynamics damping=\"0.001\"/>");
+  HandLayout layout = GuessHand(Write("weak.urdf", weak)).layout;
+  EXPECT_EQ(layout.least_damping, layout.damping);
+  ModelReport report;
+  const HandModel raised = LoadHand(directory_ / "weak.urdf", layout, {}, &report);
+  for (const Joint& joint : raised.joints) EXPECT_EQ(joint.damping, layout.damping);
+  EXPECT_NE(report.warnings.front().text.find("less than the scenario's least for 12 joints"),
+            std::string::npos);
+  layout.least_damping = 0;
+  EXPECT_EQ(LoadHand(directory_ / "weak.urdf", layout).joints.front().damping, 0.001);
 }
 
 TEST_F(PostureTest, TouchesABallWithFingersOfAnyNumberOfJoints) {
