@@ -38,8 +38,8 @@ Check CheckProgram(const std::string& daemon) {
 /// The programs that replay, film and draw. Without arguments each says how it is used.
 Check CheckHelpers() {
   std::string found;
-  for (const char* name :
-       {"regrasp-run", "regrasp-hand", "regrasp-object", "regrasp-plot-experiment"}) {
+  for (const char* name : {"regrasp-run", "regrasp-film", "regrasp-hand", "regrasp-object",
+                           "regrasp-plot-experiment"}) {
     try {
       const std::string path = FindHelper(name);
       const Finished finished = RunProgram({path});

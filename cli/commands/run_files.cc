@@ -9,6 +9,7 @@
 
 #include "cli/client/context.h"
 #include "cli/client/program.h"
+#include "cli/grammar/units.h"
 
 namespace regrasp::cli {
 namespace {
@@ -74,33 +75,64 @@ std::string FindRun(Context& context, const std::string& name) {
 ExitCode Run(Context& context, const Invocation& invocation,
              const std::vector<std::string>& defaults = {}) {
   const std::string file = FindRun(context, invocation.Text("run"));
-  std::vector<std::string> arguments = {FindHelper("regrasp-run"), invocation.command->words, file};
+  const bool film = invocation.command->words == "video";
+  std::vector<std::string> arguments = {FindHelper(film ? "regrasp-film" : "regrasp-run"),
+                                        invocation.command->words, file};
   arguments.insert(arguments.end(), defaults.begin(), defaults.end());
   for (const Arg& arg : invocation.command->args) {
     if (arg.key == "run" || !invocation.Has(arg.key)) continue;
     arguments.push_back("--" + arg.key);
-    arguments.push_back(invocation.Text(arg.key));
+    arguments.push_back(invocation.Text(arg.key, "yes"));
   }
   if (context.out().format() == Format::kJson) arguments.push_back("--json");
   if (context.options().quiet) arguments.push_back("--quiet");
   const int code = WaitForEnd(Start(arguments));
   if (code > 128)
-    throw CliError(kFailed, fmt::format("regrasp-run ended by signal {}", code - 128), "try again");
+    throw CliError(kFailed,
+                   fmt::format("{} ended by signal {}", fs::path(arguments[0]).filename().string(),
+                               code - 128),
+                   "try again");
   return static_cast<ExitCode>(code);
 }
 
-ExitCode Replay(Context& context, const Invocation& invocation) {
-  const std::string speed = invocation.Text("speed");
-  if (!speed.empty() && speed != "max" && ParseNumber(speed, "--speed") <= 0)
-    throw CliError(kUsage, fmt::format("--speed {}: expected more than 0, or max", speed),
-                   "regrasp replay RUN --speed 10");
-  if (speed != "max") return Run(context, invocation);
-  Invocation without = invocation;
-  without.local.erase("speed");
-  return Run(context, without);
+/// The command's options in the units that the helper takes, checked.
+Invocation Checked(const Invocation& invocation) {
+  Invocation checked = invocation;
+  const auto check = [&](const char* key, std::string_view unit, double least, bool included) {
+    if (!invocation.Has(key)) return;
+    const std::string text = invocation.Text(key), flag = std::string("--") + key;
+    const double value = ParseQuantity(text, flag, unit);
+    if (value < least || (value == least && !included))
+      throw CliError(kUsage,
+                     fmt::format("{} {}: expected {}", flag, text,
+                                 included ? fmt::format("{:g} or more", least)
+                                          : fmt::format("more than {:g}", least)),
+                     "regrasp help " + invocation.command->words);
+    checked.local[key] = fmt::format("{}", value);
+  };
+  if (invocation.Text("speed") == "max")
+    checked.local.erase("speed");
+  else
+    check("speed", "", 0, false);
+  check("fps", "Hz", 0, false);
+  check("rate", "Hz", 0, false);
+  check("from", "s", 0, true);
+  check("to", "s", 0, false);
+  const auto number = [&](const char* key) { return std::stod(checked.Text(key)); };
+  if (checked.Has("from") && checked.Has("to") && number("to") <= number("from"))
+    throw CliError(kUsage,
+                   fmt::format("--to {}: expected more than --from {}", invocation.Text("to"),
+                               invocation.Text("from")),
+                   "regrasp help " + invocation.command->words);
+  return checked;
 }
 
-ExitCode Export(Context& context, const Invocation& invocation) {
+ExitCode Replay(Context& context, const Invocation& invocation) {
+  return Run(context, Checked(invocation));
+}
+
+ExitCode Export(Context& context, const Invocation& typed) {
+  const Invocation invocation = Checked(typed);
   if (invocation.Has("output")) return Run(context, invocation);
   // Beside nobody's files: into the present directory, under the run's own name.
   const std::string format = invocation.Text("format");
@@ -112,17 +144,7 @@ ExitCode Export(Context& context, const Invocation& invocation) {
 }
 
 ExitCode Video(Context& context, const Invocation& invocation) {
-  for (const char* key : {"fps", "speed", "from", "to"})
-    if (invocation.Has(key)) {
-      const double value = ParseNumber(invocation.Text(key), std::string("--") + key);
-      const bool rate = *key == 'f' && key[1] == 'p' ? true : *key == 's';
-      if (value < 0 || (rate && value == 0))
-        throw CliError(kUsage,
-                       fmt::format("--{} {}: expected {}", key, invocation.Text(key),
-                                   rate ? "more than 0" : "0 or more"),
-                       "regrasp help video");
-    }
-  return Run(context, invocation);
+  return Run(context, Checked(invocation));
 }
 
 Arg RunArg() {
@@ -138,8 +160,15 @@ std::vector<CommandSpec> RunFileCommands() {
   Arg format = TextArg("format", "--format", "NAME", "csv: a directory with a file per topic");
   format.values = {"csv", "npz", "mcap"};
   format.required = true;
-  Arg film = TextArg("output", "-o,--output", "FILE", "the film, .mp4");
+  Arg film = TextArg("output", "-o,--output", "FILE", "the film: .mp4 (H.264) or .gif");
   film.required = true;
+  Arg scene_only;
+  scene_only.key = "scene-only";
+  scene_only.flags = "--scene-only";
+  scene_only.kind = ArgKind::kFlag;
+  scene_only.help = "without the curves below";
+  const Arg from = TextArg("from", "--from", "S", "begin at this simulated time", "0");
+  const Arg to = TextArg("to", "--to", "S", "end at this simulated time", "the end of the run");
   return {
       MethodCommand("record.start", kGroup, RecordStart, {.positional = {"file"}}),
       MethodCommand("record.stop", kGroup, RecordStop),
@@ -148,7 +177,7 @@ std::vector<CommandSpec> RunFileCommands() {
        kGroup,
        "re-execute a run file and compare every recorded state",
        nullptr,
-       {RunArg(), TextArg("speed", "--speed", "X|max", "times real time", "max")},
+       {RunArg(), TextArg("speed", "--speed", "X|max", "times real time", "max"), from, to},
        Replay},
       {"export",
        kGroup,
@@ -156,16 +185,17 @@ std::vector<CommandSpec> RunFileCommands() {
        nullptr,
        {RunArg(), format,
         TextArg("output", "-o,--output", "PATH", "where to write; must not exist",
-                "named after the run, in this directory")},
+                "named after the run, in this directory"),
+        TextArg("rate", "--rate", "HZ", "execute again and sample so often", "as recorded"), from,
+        to},
        Export},
       {"video",
        kGroup,
        "film a run file: scene and curves",
        nullptr,
        {RunArg(), film, TextArg("fps", "--fps", "N", "pictures per second", "25"),
-        TextArg("speed", "--speed", "X", "seconds of the run per second of film", "1"),
-        TextArg("from", "--from", "S", "begin at this simulated time", "0"),
-        TextArg("to", "--to", "S", "end at this simulated time", "the end of the run")},
+        TextArg("speed", "--speed", "X", "seconds of the run per second of film", "1"), from, to,
+        scene_only},
        Video},
   };
 }

@@ -2,18 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cli/run/npz.h"
+#include "cli/run/resample.h"
 #include "core/files/draft.h"
 #include "core/files/names.h"
 #include "core/journal/checked_json.h"
 #include "core/journal/journal.h"
+#include "core/journal/run_messages.h"
 
 namespace regrasp::run {
 namespace {
@@ -48,10 +53,10 @@ struct Topic {
 struct Run {
   std::map<std::string, Topic> topics;
   std::vector<std::string> joints, fingers;
-  McapSummary summary;
 };
 
 void AddMessage(const std::string& path, const McapMessage& message, Run* run) {
+  if (!IsTabular(message.topic)) return;
   CheckFileName(path, "topic", message.topic);
   Json json = ParseFileJson(message.data);
   if (!json.is_object()) throw JournalError("a message that is no object");
@@ -67,14 +72,16 @@ void AddMessage(const std::string& path, const McapMessage& message, Run* run) {
   run->topics[std::string(message.topic)].rows.push_back(std::move(json));
 }
 
-Run Read(const std::string& path, const OnRun& on_run) {
+/// Where messages come from: the file, or the replay of a stretch. Tells what of the file was lost.
+using Source = std::function<McapSummary(const OnMessage&)>;
+
+Run Read(const std::string& path, const Source& source, McapSummary* summary) {
   Run run;
   std::string topic;
   try {
-    run.summary = ReadMcap(path, [&](const McapMessage& message) {
+    *summary = source([&](const McapMessage& message) {
       topic = message.topic;
       AddMessage(path, message, &run);
-      if (topic == "run") on_run(message.data);
     });
   } catch (const nlohmann::json::exception& e) {
     throw std::runtime_error(fmt::format("{}: a message of topic '{}' is not as expected: {}", path,
@@ -86,12 +93,54 @@ Run Read(const std::string& path, const OnRun& on_run) {
   return run;
 }
 
+/// What belongs to the run however short the stretch.
+bool IsJournal(std::string_view topic) {
+  return topic == "run" || topic == "commands" || topic == "scene" || topic == "saved_states";
+}
+
+/// The messages of the file's last segment in a stretch of time; of its journal all where
+/// `whole_journal`, else what describes the run.
+McapSummary ReadStretch(const std::string& path, const Stretch& stretch, bool whole_journal,
+                        const OnMessage& on_message) {
+  std::vector<McapChunk> chunks;
+  const RunFile file = ReadJournals(path, &chunks);
+  if (whole_journal && file.segments.size() > 1)
+    throw std::runtime_error(
+        fmt::format("{} has {} segments, of which a stretch would be cut out: add --rate HZ, which "
+                    "writes the last one alone",
+                    path, file.segments.size()));
+  const Segment& segment = file.segments.back();
+  const auto time = [&](double time_s) {
+    return segment.offset_ns + static_cast<std::uint64_t>(std::min(time_s, 1e9) * 1e9 + 0.5);
+  };
+  const std::uint64_t begin = time(stretch.from_s), end = time(stretch.to_s);
+  std::uint64_t count = 0;
+  McapSummary summary = ReadMcap(
+      path,
+      [&](const McapMessage& message) {
+        const bool always = message.topic == "run" || message.topic == "scene" ||
+                            (whole_journal && IsJournal(message.topic));
+        const bool here =
+            message.time >= (always ? segment.offset_ns : begin) && (always || message.time <= end);
+        if (!here) return;
+        ++count;
+        on_message(message);
+      },
+      [&](const McapChunk& chunk) {
+        if (chunk.end >= begin && chunk.start <= end) return true;
+        return std::ranges::any_of(chunk.topics, IsJournal);
+      });
+  summary.messages = count;
+  return summary;
+}
+
 /// What item `i` of a list of `size` is called.
 std::string ItemName(const Run& run, std::size_t i, std::size_t size) {
-  if (size == run.joints.size()) return run.joints[i];
-  if (size == run.fingers.size()) return run.fingers[i];
   if (size == 3) return std::string(1, "xyz"[i]);
   if (size == 4) return std::string(1, "wxyz"[i]);
+  // Former files have lists where there are names now.
+  if (size == run.joints.size()) return run.joints[i];
+  if (size == run.fingers.size()) return run.fingers[i];
   return std::to_string(i);
 }
 
@@ -134,7 +183,7 @@ void WriteCsv(const Run& run, const Topic& topic, const fs::path& path) {
           throw std::runtime_error(fmt::format("a table of more than {} columns", kMaxColumns));
         columns.push_back(cells[i].first);
         const std::string& name = cells[i].first;  // of noise.position_m the last part tells
-        units.push_back(UnitOf(value.is_object() ? name : field));
+        units.push_back(UnitOf(UnitOf(field).empty() ? name : field));
       }
     }
   }
@@ -174,14 +223,15 @@ std::vector<std::size_t> ShapeOf(const Json& value) {
   return shape;
 }
 
-bool AllOf(const Json& value, bool (Json::*kind)() const noexcept) {
-  if (!value.is_array()) return (value.*kind)();
+bool AllOf(const Json& value, bool (Json::*kind)() const noexcept, bool or_null) {
+  if (!value.is_array()) return (value.*kind)() || (or_null && value.is_null());
   for (const Json& item : value)
-    if (!AllOf(item, kind)) return false;
+    if (!AllOf(item, kind, or_null)) return false;
   return true;
 }
 
 void Numbers(const Json& value, std::vector<double>* out) {
+  if (value.is_null()) return out->push_back(std::numeric_limits<double>::quiet_NaN());
   if (!value.is_array()) return out->push_back(value.get<double>());
   for (const Json& item : value) Numbers(item, out);
 }
@@ -189,6 +239,19 @@ void Numbers(const Json& value, std::vector<double>* out) {
 void Bools(const Json& value, std::string* out) {
   if (!value.is_array()) return out->push_back(value.get<bool>() ? '\1' : '\0');
   for (const Json& item : value) Bools(item, out);
+}
+
+/// {"thumb": 1, "first": 2} -> [1, 2] where the names are those of all fingers, or all joints.
+Json AsList(const Run& run, const Json& value) {
+  if (!value.is_object()) return value;
+  for (const auto* names : {&run.fingers, &run.joints}) {
+    if (value.size() != names->size()) continue;
+    Json list = Json::array();
+    for (const std::string& name : *names)
+      if (const auto found = value.find(name); found != value.end()) list.push_back(*found);
+    if (list.size() == names->size()) return list;
+  }
+  return value;
 }
 
 /// One field of every row: numbers and truth values as such, everything else as text.
@@ -199,8 +262,8 @@ void AddField(const Topic& topic, const std::string& name, const std::string& fi
     const auto found = row.find(field);
     const bool same =
         found != row.end() && (inner.empty() ? !found->is_array() : Regular(*found, inner));
-    numbers = numbers && same && AllOf(*found, &Json::is_number);
-    bools = bools && same && AllOf(*found, &Json::is_boolean);
+    numbers = numbers && same && AllOf(*found, &Json::is_number, true);
+    bools = bools && same && AllOf(*found, &Json::is_boolean, false);
   }
   std::vector<std::size_t> shape = {topic.rows.size()};
   if (numbers || bools) shape.insert(shape.end(), inner.begin(), inner.end());
@@ -235,7 +298,7 @@ void WriteNpz(const Run& run, const std::string& out) {
     for (const std::string& field : fields) {
       Topic with;  // commands differ in their fields
       for (const Json& row : topic.rows)
-        with.rows.push_back(row.contains(field) ? row : Json{{field, ""}});
+        with.rows.push_back({{field, row.contains(field) ? AsList(run, row.at(field)) : Json("")}});
       AddField(with, name + "." + field, field, &npz);
       if (const auto unit = UnitOf(field); !unit.empty())
         units.push_back(fmt::format("{}.{} [{}]", name, field, unit));
@@ -247,51 +310,76 @@ void WriteNpz(const Run& run, const std::string& out) {
   npz.Finish();
 }
 
-McapSummary WriteMcap(const std::string& path, const std::string& out, const OnRun& on_run) {
+McapSummary WriteMcap(const std::string& path, const Source& source, const std::string& out) {
   McapWriter writer(out);
-  // Channels stand before the first message: two passes.
-  std::map<std::string, std::string> schemas;
-  std::vector<std::string> order;
-  ReadMcap(path, [&](const McapMessage& message) {
-    if (message.topic == "run") on_run(message.data);
-    if (!schemas.emplace(message.topic, message.schema).second) return;
-    CheckFileName(path, "topic", message.topic);
-    order.emplace_back(message.topic);
+  std::map<std::string, std::uint16_t, std::less<>> channels;
+  const McapSummary summary = source([&](const McapMessage& message) {
+    auto channel = channels.find(message.topic);
+    if (channel == channels.end()) {
+      CheckFileName(path, "topic", message.topic);
+      if (channels.size() >= UINT16_MAX) throw std::runtime_error(path + " holds too many topics");
+      writer.Flush();  // a channel stands before its messages
+      const std::string topic(message.topic);
+      channel = channels
+                    .emplace(topic, writer.AddChannel(topic, std::string(message.schema_name),
+                                                      std::string(message.schema)))
+                    .first;
+    }
+    writer.Write(channel->second, message.time, message.data);
   });
-  if (!schemas.contains("run")) throw std::runtime_error(path + " holds no run");
-  if (order.size() >= UINT16_MAX) throw std::runtime_error(path + " holds too many topics");
-  std::map<std::string, std::uint16_t> channels;
-  for (const std::string& topic : order) channels[topic] = writer.AddChannel(topic, schemas[topic]);
-  McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
-    writer.Write(channels.at(std::string(message.topic)), message.time, message.data);
-  });
+  if (!channels.contains("run")) throw std::runtime_error(path + " holds no run");
   writer.Finish();
   return summary;
 }
 
-ExportResult Result(McapSummary summary, std::uint64_t files) {
-  return {summary.messages, files, summary.complete, std::move(summary.lost)};
+McapSummary ResampleFile(const std::string& path, const ExportOptions& options,
+                         const OnMessage& on_message, std::string* note) {
+  RunWindow window(path, options.stretch);
+  *note = window.note();
+  McapSummary summary;
+  Resample(&window, options.rate_hz, [&](const McapMessage& message) {
+    ++summary.messages;
+    on_message(message);
+  });
+  summary.complete = window.file().complete;
+  summary.lost = window.file().lost;
+  return summary;
 }
 
 }  // namespace
 
-ExportResult ExportRun(const std::string& path, const std::string& format, const std::string& out,
-                       const OnRun& on_run) {
-  RemoveAbandonedDrafts(fs::path(out).parent_path());
-  Draft draft(out, Draft::Existing::kKeep,
+ExportResult ExportRun(const std::string& path, const ExportOptions& options, const OnRun& on_run) {
+  const std::string& format = options.format;
+  RemoveAbandonedDrafts(fs::path(options.out).parent_path());
+  Draft draft(options.out, Draft::Existing::kKeep,
               format == "csv" ? Draft::Kind::kDirectory : Draft::Kind::kFile);
   ExportResult result;
+  const Source source = [&](const OnMessage& to_output) {
+    const OnMessage on_message = [&](const McapMessage& message) {
+      if (message.topic == "run") on_run(message.data);
+      to_output(message);
+    };
+    if (options.whole) return ReadMcap(path, on_message);
+    if (options.rate_hz > 0) return ResampleFile(path, options, on_message, &result.note);
+    return ReadStretch(path, options.stretch, format == "mcap", on_message);
+  };
+  McapSummary summary;
+  result.files = 1;
   if (format == "mcap") {
-    result = Result(WriteMcap(path, draft.path(), on_run), 1);
+    summary = WriteMcap(path, source, draft.path());
   } else {
-    Run run = Read(path, on_run);
+    const Run run = Read(path, source, &summary);
     if (format == "npz") WriteNpz(run, draft.path());
-    if (format == "csv")
+    if (format == "csv") {
       for (const auto& [name, topic] : run.topics)
         WriteCsv(run, topic, fs::path(draft.path()) / (name + ".csv"));
-    result = Result(std::move(run.summary), format == "csv" ? run.topics.size() : 1);
+      result.files = run.topics.size();
+    }
   }
   draft.Commit();
+  result.messages = summary.messages;
+  result.complete = summary.complete;
+  result.lost = std::move(summary.lost);
   return result;
 }
 

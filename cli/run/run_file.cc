@@ -8,17 +8,19 @@
 #include "core/journal/check.h"
 #include "core/journal/checked_json.h"
 #include "core/journal/journal_text.h"
+#include "core/journal/run_messages.h"
 
 namespace regrasp::run {
 namespace {
 
-void AddConfig(RunFile* file, std::string_view text) {
-  ConfigRead read = ParseConfig(text);
+void AddConfig(RunFile* file, const McapMessage& message) {
+  ConfigRead read = ParseConfig(message.data);
   if (read.segment != static_cast<int>(file->segments.size()))
     throw JournalError(fmt::format("segment {} follows {}", read.segment, file->segments.size()));
   Segment& segment = file->segments.emplace_back();
   segment.journal->config = std::move(read.config);
   segment.build = std::move(read.build);
+  segment.offset_ns = message.time;
 }
 
 Segment& Of(RunFile* file, int segment) {
@@ -48,11 +50,15 @@ std::int64_t Integer(const nlohmann::ordered_json& json, const char* key, std::i
 }
 
 void AddState(RunFile* file, std::string_view text) {
-  const auto json = ParseFileJson(text);
-  Of(file, static_cast<int>(Integer(json, "segment", 1'000'000)))
-      .states.push_back({Integer(json, "tick", kMaxTick),
-                         static_cast<std::size_t>(Integer(json, "commands", 1'000'000'000)),
-                         ParseHash(json.at("state_hash").get<std::string>())});
+  int segment = 0;
+  const Segment::State state = ParseState(text, &segment);
+  Of(file, segment).states.push_back(state);
+}
+
+void AddSavedState(RunFile* file, std::string_view text) {
+  const RunSavedState state = ParseSavedState(text);
+  Of(file, state.segment)
+      .saved.push_back({state.tick, state.commands, state.state_hash, DigestOf(state.bytes)});
 }
 
 /// What is known to follow from the commands that are left, after a loss.
@@ -60,11 +66,17 @@ void Cut(Segment* segment) {
   std::erase_if(segment->states, [segment](const Segment::State& state) {
     return state.commands > segment->journal->entries.size();
   });
+  std::erase_if(segment->saved, [segment](const Segment::Saved& state) {
+    return state.commands > segment->journal->entries.size();
+  });
 }
 
 /// A segment's states in order; without a gap in its commands.
 void Finish(const RunFile& file, Segment* segment) {
   std::ranges::stable_sort(segment->states, {}, [](const Segment::State& state) {
+    return std::pair(state.tick, state.commands);
+  });
+  std::ranges::stable_sort(segment->saved, {}, [](const Segment::Saved& state) {
     return std::pair(state.tick, state.commands);
   });
   if (!file.lost.empty()) return Cut(segment);
@@ -75,30 +87,29 @@ void Finish(const RunFile& file, Segment* segment) {
                                      state.tick, state.commands, known));
 }
 
-}  // namespace
+using Wanted = std::function<bool(const McapChunk&)>;
 
-std::int64_t Segment::last_tick() const {
-  std::int64_t tick = states.empty() ? 0 : states.back().tick;
-  if (!journal->entries.empty()) tick = std::max(tick, journal->entries.back().tick);
-  return tick;
-}
-
-RunFile ReadRunFile(const std::string& path) {
+/// `states`: also those, and the saved ones. `wanted` may be empty: the whole file is read.
+RunFile Read(const std::string& path, bool states, const Wanted& wanted) {
   RunFile file;
   std::string fault;  // the first thing that does not follow: a gap, where something was lost
+  const auto take = [&](const McapMessage& message) {
+    if (!fault.empty()) return;
+    try {
+      if (message.topic == "run") AddConfig(&file, message);
+      if (message.topic == "commands") AddCommand(&file, message.data);
+      if (states && message.topic == "state") AddState(&file, message.data);
+      if (states && message.topic == "saved_states") AddSavedState(&file, message.data);
+    } catch (const JournalError& e) {
+      fault = e.what();
+    } catch (const StateError& e) {
+      fault = e.what();
+    } catch (const nlohmann::json::exception& e) {
+      fault = fmt::format("a damaged state: {}", e.what());
+    }
+  };
   try {
-    McapSummary summary = ReadMcap(path, [&](const McapMessage& message) {
-      if (!fault.empty()) return;
-      try {
-        if (message.topic == "run") AddConfig(&file, message.data);
-        if (message.topic == "commands") AddCommand(&file, message.data);
-        if (message.topic == "state") AddState(&file, message.data);
-      } catch (const JournalError& e) {
-        fault = e.what();
-      } catch (const nlohmann::json::exception& e) {
-        fault = fmt::format("a damaged state: {}", e.what());
-      }
-    });
+    McapSummary summary = wanted ? ReadMcap(path, take, wanted) : ReadMcap(path, take);
     file.complete = summary.complete;
     file.messages = summary.messages;
     file.lost = std::move(summary.lost);
@@ -109,6 +120,37 @@ RunFile ReadRunFile(const std::string& path) {
     throw JournalError(path + ": " + e.what());
   }
   return file;
+}
+
+}  // namespace
+
+std::int64_t Segment::last_tick() const {
+  std::int64_t tick = states.empty() ? 0 : states.back().tick;
+  if (!journal->entries.empty()) tick = std::max(tick, journal->entries.back().tick);
+  return tick;
+}
+
+Segment::State ParseState(std::string_view text, int* segment) {
+  const auto json = ParseFileJson(text);
+  *segment = static_cast<int>(Integer(json, "segment", 1'000'000));
+  return {Integer(json, "tick", kMaxTick),
+          static_cast<std::size_t>(Integer(json, "commands", 1'000'000'000)),
+          ParseHash(json.at("state_hash").get<std::string>())};
+}
+
+std::uint64_t DigestOf(std::string_view bytes) {
+  StateHasher hasher;
+  for (const char byte : bytes) hasher.Add(byte);
+  return hasher.Digest();
+}
+
+RunFile ReadRunFile(const std::string& path) { return Read(path, true, {}); }
+
+RunFile ReadJournals(const std::string& path, std::vector<McapChunk>* chunks) {
+  return Read(path, false, [chunks](const McapChunk& chunk) {
+    chunks->push_back(chunk);
+    return chunk.topics.contains("run") || chunk.topics.contains("commands");
+  });
 }
 
 }  // namespace regrasp::run

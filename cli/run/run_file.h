@@ -20,6 +20,15 @@ struct Segment {
     std::uint64_t hash = 0;
   };
   std::vector<State> states;  ///< in order of ticks
+  /// A state to go on from; what it must be like at that moment.
+  struct Saved {
+    std::int64_t tick = 0;
+    std::size_t commands = 0;
+    std::uint64_t hash = 0;
+    std::uint64_t digest = 0;  ///< DigestOf() its bytes
+  };
+  std::vector<Saved> saved;     ///< in order of ticks
+  std::uint64_t offset_ns = 0;  ///< of its tick 0 in the file's time
   /// The last tick the file knows of.
   std::int64_t last_tick() const;
 };
@@ -34,5 +43,12 @@ struct RunFile {
 /// Of a damaged file, what leads without a gap from the beginning of each segment. Throws
 /// McapError, JournalError (which name file and place).
 RunFile ReadRunFile(const std::string& path);
+/// Only configurations and commands, which leaves most of a whole file unread. `chunks`: its index.
+RunFile ReadJournals(const std::string& path, std::vector<McapChunk>* chunks);
+
+/// A message of the topic `state`. Throws JournalError.
+Segment::State ParseState(std::string_view text, int* segment);
+/// 64 bits over all bytes of a saved state.
+std::uint64_t DigestOf(std::string_view bytes);
 
 }  // namespace regrasp::run

@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "cli/run/gif.h"
+#include "cli/run/mp4_index.h"
 #include "core/files/draft.h"
-#include "core/journal/replay.h"
 #include "snapshots/snapshots.h"
 
 namespace regrasp::run {
@@ -19,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kWidth = 1280, kSceneHeight = 640, kCurveHeight = 320;
-constexpr double kWindow_s = 10;  // of the curves
 
 /// A directory for single pictures, removed at the end.
 struct Scratch {
@@ -35,58 +36,134 @@ struct Scratch {
   fs::path path;
 };
 
+class Film {
+ public:
+  virtual ~Film() = default;
+  virtual void Add(const cv::Mat& picture) = 0;
+  /// Throws std::runtime_error when something could not be written.
+  virtual void Finish() = 0;
+};
+
+class H264Film : public Film {
+ public:
+  H264Film(const std::string& path, double fps, cv::Size size) : path_(path) {
+    writer_.open(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('a', 'v', 'c', '1'), fps, size);
+    if (!writer_.isOpened())
+      throw std::runtime_error(
+          "no H.264 encoder: OpenCV's FFmpeg has none, or " + path +
+          " cannot be written; install libx264 (Debian: libavcodec59), or make a .gif");
+  }
+  void Add(const cv::Mat& picture) override { writer_.write(picture); }
+  void Finish() override {
+    writer_.release();
+    // The writer tells of no failure: what it could not write is missing.
+    std::error_code error;
+    if (fs::file_size(path_, error) == 0 || error)
+      throw std::runtime_error("cannot write " + path_);
+    PutIndexFirst(path_);
+  }
+
+ private:
+  std::string path_;
+  cv::VideoWriter writer_;
+};
+
+class GifFilm : public Film {
+ public:
+  GifFilm(const std::string& path, double fps, cv::Size size)
+      : size_(size / 2), gif_(path, size_.width, size_.height, 1 / fps) {}
+  void Add(const cv::Mat& picture) override {
+    cv::Mat small;
+    cv::resize(picture, small, size_, 0, 0, cv::INTER_AREA);
+    gif_.Add({small.data, small.total() * small.elemSize()});
+  }
+  void Finish() override { gif_.Finish(); }
+
+ private:
+  cv::Size size_;
+  Gif gif_;
+};
+
+/// Draws the present moment.
+class Painter {
+ public:
+  Painter(const SessionConfig& config, bool scene_only) : config_(config), scene_only_(scene_only) {
+    scene_.width = curve_.width = kWidth;
+    scene_.height = kSceneHeight;
+    curve_.height = kCurveHeight;
+    curve_.last_s = kCurveWindow_s;
+    curve_.object_name = config.model.object.name;
+  }
+  cv::Size size() const { return {kWidth, kSceneHeight + (scene_only_ ? 0 : kCurveHeight)}; }
+
+  /// Keeps the moment for the curves.
+  void See(Session* session) {
+    if (scene_only_) history_.clear();
+    session->Snapshot(&history_.emplace_back(), false);
+    for (const Event& event : session->TakeEvents()) events_.push_back(event);
+  }
+  /// A curve needs two moments.
+  bool ready() const { return scene_only_ || history_.size() > 1; }
+  cv::Mat Paint() const {
+    const std::string scene = scratch_.path / "scene.png", curve = scratch_.path / "curve.png";
+    PlotScene(history_.back(), config_.model.hand, config_.model.object, scene_, scene);
+    const cv::Mat picture = cv::imread(scene);
+    if (scene_only_) return picture;
+    PlotQuality(history_, events_, config_.model.hand, curve_, curve);
+    cv::Mat both;
+    cv::vconcat(picture, cv::imread(curve), both);
+    return both;
+  }
+
+ private:
+  const SessionConfig& config_;
+  const bool scene_only_;
+  const Scratch scratch_;
+  PlotOptions scene_, curve_;
+  std::vector<Frame> history_;
+  std::vector<Event> events_;
+};
+
 }  // namespace
 
-VideoResult WriteVideo(const RunFile& file, const VideoOptions& options, const std::string& out) {
-  if (fs::path(out).extension() != ".mp4")
-    throw std::runtime_error(out + ": a film's name ends in .mp4");
+VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std::string& out,
+                       const OnPicture& on_picture) {
+  const std::string suffix = fs::path(out).extension();
+  if (suffix != ".mp4" && suffix != ".gif")
+    throw std::runtime_error(out + ": a film's name ends in .mp4 or .gif");
   RemoveAbandonedDrafts(fs::path(out).parent_path());
   Draft draft(out, Draft::Existing::kKeep);
-  const Segment& segment = file.segments.back();
-  const SessionConfig& config = segment.journal->config;
-  const double dt = config.world.dt;
-  const double end_s = std::min(options.to_s, static_cast<double>(segment.last_tick()) * dt);
-  if (end_s <= options.from_s) throw std::runtime_error("nothing happens in this stretch of time");
+  const SessionConfig& config = window->segment().journal->config;
+  const double dt = config.world.dt, step_s = options.speed / options.fps;
+  const double end_s = static_cast<double>(window->end_tick()) * dt;
+  const int total = static_cast<int>(std::ceil((end_s - options.stretch.from_s) / step_s - 1e-9));
+  if (total <= 0) throw std::runtime_error("nothing happens in this stretch of time");
 
-  const Scratch scratch;
-  const std::string scene_file = scratch.path / "scene.png",
-                    curve_file = scratch.path / "curve.png";
-  cv::VideoWriter writer(draft.path(), cv::VideoWriter::fourcc('m', 'p', '4', 'v'), options.fps,
-                         {kWidth, kSceneHeight + kCurveHeight});
-  if (!writer.isOpened()) throw std::runtime_error("cannot write " + out);
-
-  Replay replay(segment.journal);
-  const ObjectModel& object = config.model.object;
-  PlotOptions scene, curve;
-  scene.width = curve.width = kWidth;
-  scene.height = kSceneHeight;
-  curve.height = kCurveHeight;
-  curve.last_s = kWindow_s;
-  curve.object_name = object.name;
-  std::vector<Frame> history;
-  std::vector<Event> events;
-  const double step_s = options.speed / options.fps;
   VideoResult result;
-  for (double time = 0; time < end_s; time += step_s) {
-    if (!replay.RunTo(std::llround(time / dt)))
+  result.codec = suffix == ".mp4" ? "H.264" : "GIF";
+  Painter painter(config, options.scene_only);
+  std::unique_ptr<Film> film;
+  if (suffix == ".mp4")
+    film = std::make_unique<H264Film>(draft.path(), options.fps, painter.size());
+  else
+    film = std::make_unique<GifFilm>(draft.path(), options.fps, painter.size());
+
+  Replay& replay = window->replay();
+  const double start_s = static_cast<double>(window->start_tick()) * dt;
+  const int before = static_cast<int>((options.stretch.from_s - start_s) / step_s);
+  for (int i = -std::max(0, before); i < total; ++i) {
+    if (!replay.RunTo(std::llround((options.stretch.from_s + i * step_s) / dt)))
       throw std::runtime_error(fmt::format("the replay differs from the recording at tick {}",
                                            replay.divergence().tick));
-    Frame& frame = history.emplace_back();
-    replay.session().Snapshot(&frame, false);
-    for (const Event& event : replay.session().TakeEvents()) events.push_back(event);
-    if (time < options.from_s || history.size() < 2) continue;
-    PlotScene(frame, config.model.hand, object, scene, scene_file);
-    PlotQuality(history, events, config.model.hand, curve, curve_file);
-    cv::Mat picture;
-    cv::vconcat(cv::imread(scene_file), cv::imread(curve_file), picture);
-    writer.write(picture);
-    ++result.frames;
+    painter.See(&replay.session());
+    if (i < 0 || !painter.ready()) continue;
+    film->Add(painter.Paint());
+    if (!on_picture(++result.frames, total)) {
+      result.interrupted = true;
+      return result;
+    }
   }
-  writer.release();
-  // The writer tells of no failure: what it could not write is missing.
-  std::error_code error;
-  if (result.frames == 0 || fs::file_size(draft.path(), error) == 0 || error)
-    throw std::runtime_error("cannot write " + out);
+  film->Finish();
   draft.Commit();
   result.duration_s = result.frames / options.fps;
   return result;

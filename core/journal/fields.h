@@ -137,6 +137,31 @@ struct Value<std::vector<T>> {
   }
 };
 
+/// Vectors of one length one after another: readers of run files take no lists in lists. Former
+/// versions wrote them so.
+template <typename Scalar, int n>
+struct Value<std::vector<Eigen::Matrix<Scalar, n, 1>>> {
+  using Vector = Eigen::Matrix<Scalar, n, 1>;
+  static Json To(const std::vector<Vector>& values) {
+    Json json = Json::array();
+    for (const Vector& value : values)
+      for (int i = 0; i < n; ++i) json.push_back(value[i]);
+    return json;
+  }
+  static void From(const Json& json, std::vector<Vector>* values) {
+    if (!json.is_array()) throw JournalError("a list is expected");
+    values->clear();
+    if (!json.empty() && json.front().is_array()) {
+      for (const Json& item : json) FromJson(item, &values->emplace_back());
+      return;
+    }
+    if (json.size() % n != 0) throw JournalError("a list has the wrong number of numbers");
+    values->resize(json.size() / n);
+    for (std::size_t i = 0; i < json.size(); ++i)
+      FromJson(json[i], &(*values)[i / n][static_cast<Eigen::Index>(i % n)]);
+  }
+};
+
 template <typename T>
 Json ToJson(const T& value) {
   return Value<T>::To(value);

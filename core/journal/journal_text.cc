@@ -6,6 +6,7 @@
 #include "core/files/names.h"
 #include "core/journal/check.h"
 #include "core/journal/checked_json.h"
+#include "core/journal/event_json.h"
 #include "core/journal/model_fields.h"
 
 namespace regrasp {
@@ -15,7 +16,8 @@ using fields::Json;
 using fields::Load;
 using fields::Save;
 
-constexpr const char* kRunFormat = "regrasp-run/1";
+constexpr const char* kRunFormat = "regrasp-run/2";
+constexpr const char* kFormerRunFormat = "regrasp-run/1";  // vertices were lists in a list
 constexpr const char* kCheckpointFormat = "regrasp-checkpoint/1";
 
 struct MethodName {
@@ -106,10 +108,10 @@ Json ChangedParameters(const SessionConfig& config) {
   return changed;
 }
 
-void CheckFormat(const Json& json, const char* expected) {
+void CheckFormat(const Json& json, const char* expected, const char* former = "") {
   std::string format;
   Load{json}("format", format);
-  if (format != expected)
+  if (format != expected && (*former == 0 || format != former))
     throw JournalError("format is '" + Shown(format) + "', this build reads '" + expected + "'");
 }
 
@@ -148,7 +150,7 @@ std::string ConfigText(const SessionConfig& config, int segment) {
 
 ConfigRead ParseConfig(std::string_view text) {
   const Json json = ParseFileJson(text);
-  CheckFormat(json, kRunFormat);
+  CheckFormat(json, kRunFormat, kFormerRunFormat);
   ConfigRead read;
   Load load{json};
   load("build", read.build);
@@ -174,7 +176,7 @@ std::string EntryText(const JournalEntry& entry, const SessionConfig& config, in
   save("segment", segment);
   save("seq", seq);
   save("tick", entry.tick);
-  save("t_s", static_cast<double>(entry.tick) * config.world.dt);
+  save("t_s", TickSeconds(entry.tick, config.world.dt));
   for (const MethodName& method : kMethods)
     if (method.type == command.type) save("method", std::string(method.name));
   CommandFields(save, command, finger, parameter);

@@ -114,9 +114,7 @@ class Reader {
       : path_(path), file_(path), message_(message) {}
 
   McapSummary Read() {
-    if (file_.At(0, kMagic.size()) != std::string_view(kMagic.data(), kMagic.size()))
-      throw McapError(path_ + " is not an MCAP file");
-    ReadSummarySection();
+    Open();
     for (std::uint64_t offset = kMagic.size(); !summary_.complete;) {
       const auto next = OneRecord(offset);
       if (!next) break;
@@ -129,7 +127,22 @@ class Reader {
     return std::move(summary_);
   }
 
+  McapSummary Read(const std::function<bool(const McapChunk&)>& wanted) {
+    Open();
+    if (chunks_.empty()) return Read();
+    for (const McapChunk& chunk : chunks_)
+      if (wanted(chunk)) OneRecord(chunk.offset);
+    summary_.complete = true;
+    return std::move(summary_);
+  }
+
  private:
+  void Open() {
+    if (file_.At(0, kMagic.size()) != std::string_view(kMagic.data(), kMagic.size()))
+      throw McapError(path_ + " is not an MCAP file");
+    ReadSummarySection();
+  }
+
   /// Reads what stands at `offset`; returns where the next record is, or nothing at the end.
   std::optional<std::uint64_t> OneRecord(std::uint64_t offset) {
     const std::string head = file_.At(offset, kRecordHead);
@@ -190,12 +203,13 @@ class Reader {
   bool Definition(std::uint8_t opcode, Cursor content, bool of_summary) {
     const auto number = content.Number<std::uint16_t>();
     if (opcode == kSchema) {
-      content.Text();  // name
+      const std::string_view name = content.Text();
       content.Text();  // encoding
       const std::string_view schema = content.Text();
       if (!content.whole()) return false;
-      const auto known = schemas_.try_emplace(number, schema).first;
-      return of_summary || known->second == schema;
+      const auto known =
+          schemas_.try_emplace(number, Schema{std::string(name), std::string(schema)});
+      return of_summary || known.first->second.text == schema;
     }
     const auto schema = content.Number<std::uint16_t>();
     const std::string_view topic = content.Text();
@@ -216,7 +230,8 @@ class Reader {
     const auto found = channels_.find(channel);
     if (!content.ok || found == channels_.end()) return false;
     message.topic = found->second.topic;
-    message.schema = found->second.schema;
+    message.schema_name = found->second.schema.name;
+    message.schema = found->second.schema.text;
     message.data = content.data;
     ++summary_.messages;
     message_(message);
@@ -301,7 +316,25 @@ class Reader {
       if (!cursor.ok) return;
       if (opcode == kSchema || opcode == kChannel) Definition(opcode, {content}, true);
       if (opcode == kStatistics) expected_ = Cursor{content}.Number<std::uint64_t>();
+      if (opcode == kChunkIndex) AddChunk({content});
     }
+    // An index that leads around in the file is none.
+    if (!std::ranges::is_sorted(chunks_, std::less_equal<>(), &McapChunk::offset)) chunks_.clear();
+  }
+
+  void AddChunk(Cursor content) {
+    McapChunk chunk;
+    chunk.start = content.Number<std::uint64_t>();
+    chunk.end = content.Number<std::uint64_t>();
+    chunk.offset = content.Number<std::uint64_t>();
+    content.Number<std::uint64_t>();  // length
+    Cursor channels{content.Text()};
+    while (channels.ok && !channels.data.empty()) {
+      const auto known = channels_.find(channels.Number<std::uint16_t>());
+      channels.Number<std::uint64_t>();  // where its index is
+      if (known != channels_.end()) chunk.topics.insert(known->second.topic);
+    }
+    chunks_.push_back(std::move(chunk));
   }
 
   void Lose(McapLoss loss) {
@@ -311,10 +344,15 @@ class Reader {
   const std::string path_;
   const File file_;
   const std::function<void(const McapMessage&)>& message_;
-  struct Channel {
-    std::string topic, schema;
+  struct Schema {
+    std::string name, text;
   };
-  std::map<std::uint16_t, std::string> schemas_;
+  struct Channel {
+    std::string topic;
+    Schema schema;
+  };
+  std::vector<McapChunk> chunks_;  ///< of the index, in the order of the file
+  std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
   McapSummary summary_;
   std::uint64_t expected_ = 0;  ///< messages
@@ -338,6 +376,12 @@ std::string LossText(const McapLoss& loss) {
 McapSummary ReadMcap(const std::string& path,
                      const std::function<void(const McapMessage&)>& message) {
   return Reader(path, message).Read();
+}
+
+McapSummary ReadMcap(const std::string& path,
+                     const std::function<void(const McapMessage&)>& message,
+                     const std::function<bool(const McapChunk&)>& wanted) {
+  return Reader(path, message).Read(wanted);
 }
 
 }  // namespace regrasp

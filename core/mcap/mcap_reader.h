@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +15,8 @@
 namespace regrasp {
 
 struct McapMessage {
-  std::string_view topic, schema, data;  ///< valid during the call
-  std::uint64_t time = 0;                ///< [ns]
+  std::string_view topic, schema_name, schema, data;  ///< valid during the call
+  std::uint64_t time = 0;                             ///< [ns]
 };
 
 /// A stretch of the file that could not be read.
@@ -34,10 +35,23 @@ struct McapSummary {
   static constexpr std::size_t kMaxLosses = 1000;
 };
 
+/// A chunk as the index at the end of a whole file tells of it; nothing of it has been checked.
+struct McapChunk {
+  std::uint64_t offset = 0;          ///< in the file
+  std::uint64_t start = 0, end = 0;  ///< [ns] of its messages
+  std::set<std::string, std::less<>> topics;
+};
+
 /// Calls `message` for every message in the order of the file, up to the last whole record. A
 /// damaged record is skipped, and the next whole chunk looked for. Throws McapError: no MCAP file,
 /// no regular file, a compression we do not know.
 McapSummary ReadMcap(const std::string& path,
                      const std::function<void(const McapMessage&)>& message);
+
+/// The same, but only the chunks that are `wanted`; those that are not are neither read nor
+/// checked. A file without an index (its writer was killed) is read whole.
+McapSummary ReadMcap(const std::string& path,
+                     const std::function<void(const McapMessage&)>& message,
+                     const std::function<bool(const McapChunk&)>& wanted);
 
 }  // namespace regrasp

@@ -42,12 +42,13 @@ McapWriter::~McapWriter() {
   }
 }
 
-std::uint16_t McapWriter::AddChannel(const std::string& topic, const std::string& schema) {
+std::uint16_t McapWriter::AddChannel(const std::string& topic, const std::string& schema_name,
+                                     const std::string& schema) {
   sequence_.push_back(0);
   const auto number = static_cast<std::uint16_t>(sequence_.size());
   Bytes schema_record, channel_record, both;
   schema_record.Add(number);
-  schema_record.AddText("regrasp." + topic);
+  schema_record.AddText(schema_name);
   schema_record.AddText("jsonschema");
   schema_record.AddText(schema);
   channel_record.Add(number);

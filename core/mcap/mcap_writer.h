@@ -27,8 +27,10 @@ class McapWriter {
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
-  /// A topic with its JSON schema (JSON text). Before the first message. Returns its number.
-  std::uint16_t AddChannel(const std::string& topic, const std::string& schema);
+  /// A topic with the name and the text of its JSON schema. Before the first message. Returns its
+  /// number.
+  std::uint16_t AddChannel(const std::string& topic, const std::string& schema_name,
+                           const std::string& schema);
   /// Adds a message (JSON text) to the open chunk. `time` [ns]. Throws McapError.
   void Write(std::uint16_t channel, std::uint64_t time, std::string_view json);
   /// Writes the open chunk: what was added is in the file now.

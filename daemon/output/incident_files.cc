@@ -28,7 +28,7 @@ Json FindingsJson(const Incident& incident, const HandModel& hand) {
               {"before_s", incident.time_s - incident.least_margin_s}};
   Json disturbances = Json::array();
   for (const Event& event : incident.disturbances)
-    disturbances.push_back(EventJson(event, hand, incident.dt));
+    disturbances.push_back(EventNewsJson(event, hand, incident.dt));
   return {{"contacts_ended", std::move(ends)},
           {"least_load_margin", std::move(margin)},
           {"lifted_finger", NameOrNull(hand, incident.lifted)},
@@ -84,7 +84,8 @@ Json SamplesJson(const Incident& incident, const HandModel& hand) {
 
 Json IncidentJson(const Incident& incident, const HandModel& hand) {
   Json events = Json::array();
-  for (const Event& event : incident.events) events.push_back(EventJson(event, hand, incident.dt));
+  for (const Event& event : incident.events)
+    events.push_back(EventNewsJson(event, hand, incident.dt));
   const Frame* last = incident.frames.empty() ? nullptr : incident.frames.back().get();
   return {{"schema", 1},
           {"kind", Name(incident.event.kind)},

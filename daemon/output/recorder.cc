@@ -11,7 +11,8 @@ namespace regrasp {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kFlushInterval = 200ms;  // what a kill can lose, of wall clock
+constexpr auto kFlushInterval = 200ms;    // what a kill can lose, of wall clock
+constexpr double kStateInterval_s = 0.5;  // of simulated time; to go half of it takes some 10 ms
 
 }  // namespace
 
@@ -23,7 +24,8 @@ Recorder::Recorder(const std::filesystem::path& path, double rate_hz, const Jour
       last_run_(run),
       writer_(path.string()) {
   for (std::size_t i = 0; i < kRunTopics.size(); ++i)
-    writer_.AddChannel(std::string(kRunTopics[i]), RunSchema(static_cast<RunTopic>(i)));
+    writer_.AddChannel(std::string(kRunTopics[i]), RunSchemaName(static_cast<RunTopic>(i)),
+                       RunSchema(static_cast<RunTopic>(i), journal.config));
   Begin(journal, run);
   thread_ = std::thread([this] { Run(); });
 }
@@ -54,6 +56,18 @@ void Recorder::Add(const Published& published) {
     ++waiting_samples_;
   }
   Push(Sample{std::make_unique<const Published>(published), all});
+}
+
+void Recorder::Add(const JournalNews& mark) {
+  Push(State{mark.entry.tick, mark.entry.state_hash, mark.run, mark.saved});
+}
+
+bool Recorder::TakeStateDue(const Published& published) {
+  const std::int64_t tick = published.frame.tick;
+  if (published.run == state_run_ && tick < next_state_) return false;
+  state_run_ = published.run;
+  next_state_ = tick + std::llround(kStateInterval_s / dt_);
+  return true;
 }
 
 /// What cannot be kept until it is written would be missing in the file, which ends therefore.
@@ -126,28 +140,37 @@ void Recorder::Write(const Item& item) {
   if (const auto* start = std::get_if<Start>(&item)) return WriteStart(*start);
   if (const auto* entry = std::get_if<Entry>(&item)) {
     Segment& segment = segments_.at(entry->run);
-    return Put(RunTopic::kCommands, entry->run, entry->entry.tick,
-               EntryText(entry->entry, segment.config, segment.number, segment.commands++));
+    return PutAlone(RunTopic::kCommands, Place(entry->run, entry->entry.tick),
+                    EntryText(entry->entry, segment.config, segment.number, segment.commands++));
+  }
+  if (const auto* state = std::get_if<State>(&item)) {
+    const auto segment = segments_.find(state->run);
+    if (segment == segments_.end()) return;  // of a run before this file
+    const RunSavedState saved{state->tick, segment->second.commands, state->state_hash,
+                              segment->second.number, *state->bytes};
+    return PutAlone(RunTopic::kSavedStates, Place(state->run, state->tick),
+                    SavedStateText(saved, segment->second.config.world.dt));
   }
   if (const auto* event = std::get_if<PublishedEvent>(&item)) {
-    const auto segment = segments_.find(event->run);
-    if (segment == segments_.end()) return;  // of a run before this file
-    const SessionConfig& config = segment->second.config;
-    return Put(RunTopic::kEvents, event->run, event->event.tick,
-               RunEvent(event->event, config.model.hand, config.world.dt, segment->second.number));
+    if (!segments_.contains(event->run)) return;
+    const RunPlace place = Place(event->run, event->event.tick);
+    return Put(RunTopic::kEvents, place, RunEvent(event->event, place));
   }
-  const Sample& sample = std::get<Sample>(item);
+  WriteSample(std::get<Sample>(item));
+}
+
+void Recorder::WriteSample(const Sample& sample) {
   const Frame& frame = sample.published->frame;
-  const std::uint64_t run = sample.published->run;
-  const auto segment = segments_.find(run);
-  if (segment == segments_.end()) return;
+  if (!segments_.contains(sample.published->run)) return;
+  const RunPlace place = Place(sample.published->run, frame.tick);
   const auto put = [&](RunTopic topic) {
-    Put(topic, run, frame.tick, RunSample(topic, *sample.published, segment->second.number));
+    Put(topic, place, RunSample(topic, frame, sample.published->commands, place));
   };
   put(RunTopic::kState);
   if (!sample.all) return;
-  for (const RunTopic topic : {RunTopic::kJoints, RunTopic::kContacts, RunTopic::kForces,
-                               RunTopic::kObject, RunTopic::kQuality})
+  for (const RunTopic topic :
+       {RunTopic::kJoints, RunTopic::kContacts, RunTopic::kForces, RunTopic::kObject,
+        RunTopic::kQuality, RunTopic::kTransforms, RunTopic::kContactScene})
     put(topic);
   if (frame.gait.active) put(RunTopic::kGait);
 }
@@ -157,18 +180,29 @@ void Recorder::WriteStart(const Start& start) {
   segment.number = static_cast<int>(segments_.size()) - 1;
   segment.offset_ns = segment.number == 0 ? 0 : last_time_;
   segment.config = start.journal.config;
-  Put(RunTopic::kRun, start.run, 0, ConfigText(segment.config, segment.number));
+  const RunPlace place = Place(start.run, 0);
+  Put(RunTopic::kRun, place, ConfigText(segment.config, segment.number));
+  Put(RunTopic::kScene, place, RunScene(place));
   for (const JournalEntry& entry : start.journal.entries)
-    Put(RunTopic::kCommands, start.run, entry.tick,
+    Put(RunTopic::kCommands, Place(start.run, entry.tick),
         EntryText(entry, segment.config, segment.number, segment.commands++));
 }
 
-void Recorder::Put(RunTopic topic, std::uint64_t run, std::int64_t tick, std::string_view text) {
+RunPlace Recorder::Place(std::uint64_t run, std::int64_t tick) const {
   const Segment& segment = segments_.at(run);
   const double time_ns = std::round(static_cast<double>(tick) * segment.config.world.dt * 1e9);
-  const std::uint64_t time = segment.offset_ns + static_cast<std::uint64_t>(time_ns);
-  last_time_ = std::max(last_time_, time);
-  writer_.Write(static_cast<std::uint16_t>(static_cast<int>(topic) + 1), time, text);
+  return {segment.config, segment.number, segment.offset_ns + static_cast<std::uint64_t>(time_ns)};
+}
+
+void Recorder::Put(RunTopic topic, const RunPlace& place, std::string_view text) {
+  last_time_ = std::max(last_time_, place.time_ns);
+  writer_.Write(static_cast<std::uint16_t>(static_cast<int>(topic) + 1), place.time_ns, text);
+}
+
+void Recorder::PutAlone(RunTopic topic, const RunPlace& place, std::string_view text) {
+  writer_.Flush();
+  Put(topic, place, text);
+  writer_.Flush();
 }
 
 }  // namespace regrasp

@@ -15,9 +15,9 @@
 #include <thread>
 #include <variant>
 
+#include "core/journal/run_messages.h"
 #include "core/mcap/mcap_writer.h"
 #include "daemon/loop/control_loop.h"
-#include "daemon/output/run_messages.h"
 
 namespace regrasp {
 
@@ -36,6 +36,10 @@ class Recorder {
   void Add(const JournalEntry& entry, std::uint64_t run);
   void Add(const Event& event, std::uint64_t run);
   void Add(const Published& published);
+  /// A state to go on from: what the control loop answered to a mark.
+  void Add(const JournalNews& mark);
+  /// Whether a state is due at this moment; asked again, the next one.
+  bool TakeStateDue(const Published& published);
   /// Writes what is waiting and ends the file. Any thread, once.
   void Finish();
 
@@ -60,13 +64,23 @@ class Recorder {
     std::unique_ptr<const Published> published;
     bool all;  ///< every topic, not only the state hash
   };
-  using Item = std::variant<Start, Entry, PublishedEvent, Sample>;
+  struct State {
+    std::int64_t tick;
+    std::uint64_t state_hash, run;
+    std::shared_ptr<const std::string> bytes;
+  };
+  using Item = std::variant<Start, Entry, PublishedEvent, Sample, State>;
 
   void Push(Item item);
   void Run();
   void Write(const Item& item);
   void WriteStart(const Start& start);
-  void Put(RunTopic topic, std::uint64_t run, std::int64_t tick, std::string_view text);
+  /// Where a message of this tick stands in the file.
+  RunPlace Place(std::uint64_t run, std::int64_t tick) const;
+  void Put(RunTopic topic, const RunPlace& place, std::string_view text);
+  /// The same in a chunk of its own: what a replay needs first is found without reading the rest.
+  void PutAlone(RunTopic topic, const RunPlace& place, std::string_view text);
+  void WriteSample(const Sample& sample);
 
   const std::filesystem::path path_;
   const double period_s_;
@@ -74,7 +88,8 @@ class Recorder {
   // I/O thread.
   std::uint64_t last_run_ = 0;
   double dt_ = 1e-3;
-  std::int64_t next_sample_ = 0;  ///< tick
+  std::int64_t next_sample_ = 0, next_state_ = 0;  ///< ticks
+  std::uint64_t state_run_ = 0;                    ///< whose next state it is
   // The recorder's thread.
   struct Segment {
     int number = 0;

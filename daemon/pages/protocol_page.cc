@@ -6,11 +6,11 @@
 #include <cctype>
 
 #include "core/exploration/criterion.h"
+#include "core/journal/run_messages.h"
 #include "core/protocol/errors.h"
 #include "core/protocol/methods.h"
 #include "core/quality/measures.h"
 #include "core/session/parameter_value.h"
-#include "daemon/output/run_messages.h"
 #include "daemon/wire/rpc.h"
 
 namespace regrasp {

@@ -6,6 +6,7 @@
 
 #include "core/journal/journal.h"
 #include "core/journal/journal_text.h"
+#include "daemon/output/recorder.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "daemon/output/files.h"
+#include "daemon/output/recorder.h"
 #include "daemon/requests/handlers.h"
 
 namespace regrasp::handlers {

@@ -11,6 +11,7 @@
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/output/output_file.h"
+#include "daemon/output/recorder.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
 
@@ -107,11 +108,12 @@ std::vector<Sample> Service::Drain() {
         RecordIncident(event);
     }
     if (recorder) recorder->Add(event, published.run);
-    Json json = EventJson(event, hand(), dt());
+    Json json = EventNewsJson(event, hand(), dt());
     if (json.contains("incident"))
       json["incident"] = incident_file_.empty() ? Json() : Json(incident_file_);
     Keep(std::move(json));
   }
+  SaveStateIfDue();
   if (fresh) {
     ++frame_number_;
     topics_.clear();
@@ -217,6 +219,16 @@ void Service::AfterTaken(std::uint64_t request, std::function<void()> then) {
 void Service::OnAcknowledged(std::uint64_t request) {
   while (!after_taken_.empty() && after_taken_.begin()->first <= request)
     after_taken_.extract(after_taken_.begin()).mapped()();
+}
+
+void Service::SaveStateIfDue() {
+  if (!recorder || !recorder->TakeStateDue(newest_)) return;
+  try {
+    Mark([this](const JournalNews& mark) {
+      if (recorder && mark.saved && !mark.saved->empty()) recorder->Add(mark);
+    });
+  } catch (const RpcException&) {  // the queue is full: the next one will do
+  }
 }
 
 void Service::RecordIncident(const Event& event) {

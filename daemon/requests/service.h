@@ -19,13 +19,14 @@
 #include "daemon/loop/control_loop.h"
 #include "daemon/output/history.h"
 #include "daemon/output/incident.h"
-#include "daemon/output/recorder.h"
 #include "daemon/requests/jobs.h"
 #include "daemon/requests/params.h"
 #include "daemon/wire/json.h"
 #include "daemon/wire/rpc.h"
 
 namespace regrasp {
+
+class Recorder;
 
 /// Called once with a result, or with an error; further calls do nothing. When its last copy goes
 /// without a call, the request is answered with an internal error.
@@ -205,6 +206,8 @@ class Service {
   void TakeFrames();
   /// Tells of a recording that has ended by itself.
   void LookAfterRecorder();
+  /// While recording: now and then a state to go on from.
+  void SaveStateIfDue();
   /// An event of the daemon's own.
   void Tell(const char* kind, const std::string& text);
   void Keep(Json event);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/gait/finger_gait.h"
+#include "core/journal/event_json.h"
 #include "core/quality/measures.h"
 #include "core/sensing/noise.h"
 #include "daemon/output/incident.h"
@@ -185,18 +186,8 @@ Json GaitJson(const GaitFrame& gait, const HandModel& hand) {
           {"regrasps", gait.regrasps}};
 }
 
-Json EventJson(const Event& event, const HandModel& hand, double dt) {
-  Json json = {{"tick", event.tick},
-               {"t_s", static_cast<double>(event.tick) * dt},
-               {"kind", Name(event.kind)},
-               {"finger", FingerName(hand, event.finger)},
-               {"value", event.value}};
-  if (event.kind == EventKind::kState)
-    json["state"] = Name(static_cast<SessionState>(static_cast<int>(event.value)));
-  if (event.kind == EventKind::kJobStarted || event.kind == EventKind::kJobFinished)
-    json["job"] = static_cast<std::int64_t>(event.value);
-  if (event.kind == EventKind::kRegrasp && event.from > 0) json["from"] = event.from;
-  json["text"] = event.text;
+Json EventNewsJson(const Event& event, const HandModel& hand, double dt) {
+  Json json = EventJson(event, hand, dt);
   if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
     json["incident"] = IncidentName(event.tick) + ".json";
   return json;

@@ -20,8 +20,9 @@ Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& pa
 Json TruthJson(const Frame& frame, const HandModel& hand);
 /// Where the finger gait is, while rotating; `active` false otherwise.
 Json GaitJson(const GaitFrame& gait, const HandModel& hand);
-/// One event; `dt` [s] turns its tick into a time.
-Json EventJson(const Event& event, const HandModel& hand, double dt);
+/// One event, with the name of the incident's record where it has one; `dt` [s] turns its tick into
+/// a time.
+Json EventNewsJson(const Event& event, const HandModel& hand, double dt);
 /// Preset name and every level.
 Json NoiseJson(const NoiseLevels& levels);
 /// One job record, with the fields of its method at the top level.

@@ -10,10 +10,11 @@ import shutil
 import signal
 import struct
 import subprocess
+import time
 import unittest
 import zipfile
 
-from harness import Case, DaemonCase, HANG_S, SOURCE, environment
+from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, environment
 
 
 class Runs(DaemonCase):
@@ -89,14 +90,94 @@ class Runs(DaemonCase):
         self.assertIn("joints.torque_nm [N m]", arrays["units"][1])
         self.assertIn("exists", self.refused(74, "export", path, "--format", "npz", "-o", self.dir / "run.npz")[0])
 
+    def test_a_replay_from_a_saved_state_comes_to_the_same(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        whole = self.json("replay", path, "--from", 0)
+        self.assertEqual((whole["from"], whole["identical"], whole["end_tick"]), ("state", True, 6700))
+        for start in (0.7, 3.3, 4.2, 5.05, 6.5):  # in a grasp, an exploration, a push, a rotation, a move
+            part = self.json("replay", path, "--from", start)
+            self.assertEqual((part["from"], part["identical"]), ("state", True), start)
+            self.assertLess(part["ticks"], 6700 - 1000 * start + 1000)
+            self.assertEqual(part["state_hash"], whole["state_hash"], start)
+        piece = self.json("replay", path, "--from", "3s", "--to", "3500ms")
+        self.assertEqual((piece["identical"], piece["end_tick"]), (True, 3500))
+        self.assertIn("nothing happens", self.refused(74, "replay", path, "--from", 100)[0])
+        self.assertIn("more than --from", self.refused(2, "replay", path, "--from", 3, "--to", 2)[0])
+
+    def test_a_saved_state_is_not_trusted(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        data = bytearray(without_checksums(path.read_bytes()))
+        at = 0
+        while (at := data.find(b'"saved_state":"', at + 1)) >= 0:  # every one: another number near its end
+            end = data.index(b'"', at + 15)
+            if end - at > 2000:
+                data[end - 1000] = ord("A") if data[end - 1000] != ord("A") else ord("B")
+        (self.dir / "false.mcap").write_bytes(data)
+        done = self.regrasp("--json", "replay", self.dir / "false.mcap", "--from", 3)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("executed from the start instead", done.stderr)
+        found = json.loads(done.stdout)
+        self.assertEqual((found["from"], found["identical"]), ("commands", True))
+        whole = self.json("replay", self.dir / "false.mcap", code=1)
+        self.assertFalse(whole["identical"])
+        self.assertIsNotNone(whole["false_saved_state_tick"])
+        self.assertIsNone(whole["first_difference"])
+
+    def test_exports_of_a_stretch_and_at_another_rate(self):
+        self.step(1000)
+        self.expect(0, "grasp")
+        self.step(1000)
+        path = pathlib.Path(self.json("record", "start", "late.mcap")["path"])
+        self.step(1000)
+        self.expect(0, "record", "stop")
+
+        def joints(name, *options):
+            self.expect(0, "export", path, "--format", "csv", "-o", self.dir / name, *options)
+            with open(self.dir / name / "joints.csv", encoding="utf-8") as file:
+                return {int(row["tick"]): row for row in csv.DictReader(file)}
+        recorded, part = joints("whole"), joints("part", "--from", 2.4, "--to", "2600ms")
+        self.assertEqual(part, {tick: row for tick, row in recorded.items() if 2400 <= tick <= 2600})
+        self.assertGreater(len(part), 1)
+        again = joints("again", "--rate", "1kHz", "--from", 0.5)
+        self.assertEqual(sorted(again), list(range(500, 3001)))  # also what was before the recording
+        for tick, row in recorded.items():
+            self.assertEqual(again[tick], row)
+        self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "short.mcap", "--rate", 10, "--from", 1, "--to", 2)
+        self.assertTrue(self.json("replay", self.dir / "short.mcap")["identical"])
+
     def test_a_film_has_its_pictures(self):
         path = self.record()
         self.expect(0, "record", "stop")
         film = self.json("video", path, "-o", self.dir / "run.mp4", "--from", "4", "--to", "4.4", "--fps", "10")
-        self.assertEqual(film["frames"], 4)
+        self.assertEqual((film["frames"], film["codec"]), (4, "H.264"))
         data = (self.dir / "run.mp4").read_bytes()
-        self.assertIn(b"ftyp", data[:16])
-        self.assertGreater(len(data), 10000)
+        self.assertEqual(data[4:8], b"ftyp")
+        self.assertIn(b"avc1", data)
+        self.assertLess(data.index(b"moov"), data.index(b"mdat"), "a player must read the index first")
+        gif = self.json("video", path, "-o", self.dir / "run.gif", "--from", "4", "--to", "4.4", "--fps", "10", "--scene-only")
+        self.assertEqual((gif["frames"], gif["codec"]), (4, "GIF"))
+        pictures = read_gif((self.dir / "run.gif").read_bytes())
+        self.assertEqual([(w, h, len(p)) for w, h, p in pictures], [(640, 320, 640 * 320)] * 4)
+        self.assertGreater(len(set(pictures[0][2])), 20)  # colours
+        self.assertIn(".mp4 or .gif", self.refused(74, "video", path, "-o", self.dir / "run.avi")[0])
+
+    def test_an_interrupted_film_leaves_nothing(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        before = set(self.dir.iterdir())
+        with subprocess.Popen([str(REGRASP), "video", str(path), "-o", str(self.dir / "run.mp4"), "--speed", "0.02"], env=environment(),
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True) as process:
+            while not any(p.name.startswith(".draft") for p in self.dir.iterdir()):
+                self.assertIsNone(process.poll())
+            os.killpg(process.pid, signal.SIGINT)
+            process.communicate(timeout=HANG_S)
+        deadline = 1000
+        while set(self.dir.iterdir()) != before and deadline:
+            deadline -= 1
+            time.sleep(0.02)
+        self.assertEqual(set(self.dir.iterdir()), before)
 
     def test_after_kill_9_everything_up_to_the_last_command_is_there(self):
         path = self.record()
@@ -152,6 +233,57 @@ class WithoutARun(Case):
         self.assertIn("not an MCAP file", self.refused(74, "replay", text)[0])
         self.refused(2, "export", text, "--format", "xls")
         self.refused(2, "replay", text, "--speed", "0")
+
+
+def read_gif(data):
+    """[(width, height, pixels)] of an animated GIF, by its specification."""
+    assert data[:6] == b"GIF89a"
+    at, pictures = 13 + 3 * (2 << (data[10] & 7)), []
+
+    def blocks():
+        nonlocal at
+        content = b""
+        while data[at]:
+            content += data[at + 1:at + 1 + data[at]]
+            at += 1 + data[at]
+        at += 1
+        return content
+    while data[at] != 0x3B:
+        if data[at] == 0x21:  # an extension
+            at += 2
+            blocks()
+            continue
+        assert data[at] == 0x2C
+        width, height = struct.unpack_from("<HH", data, at + 5)
+        bits = data[at + 10]
+        at += 11
+        pictures.append((width, height, lzw(blocks(), bits)))
+    return pictures
+
+
+def lzw(data, root):
+    """The pixels behind variable-length codes."""
+    clear, number, filled, at = 1 << root, 0, 0, 0
+    pixels, table, bits, previous = bytearray(), {}, root + 1, None
+    while True:
+        while filled < bits:
+            number |= data[at] << filled
+            filled, at = filled + 8, at + 1
+        code, number, filled = number & ((1 << bits) - 1), number >> bits, filled - bits
+        if code == clear:
+            table, bits, previous = {i: bytes([i]) for i in range(clear)}, root + 1, None
+            following = clear + 2
+            continue
+        if code == clear + 1:
+            return bytes(pixels)
+        word = table[code] if code in table else previous + previous[:1]
+        pixels += word
+        if previous is not None and following < 4096:
+            table[following] = previous + word[:1]
+            following += 1
+            if following == 1 << bits and bits < 12:
+                bits += 1
+        previous = word
 
 
 def pid_of(path):

@@ -275,7 +275,7 @@ class KilledTools(DaemonCase):
         for suffix, words in (("", ["export", "--format", "csv"]), (".npz", ["export", "--format", "npz"]),
                               (".mcap", ["export", "--format", "mcap"]), (".mp4", ["video", "--to", "1"])):
             target = made / f"x{suffix}"
-            command = [str(BIN / "regrasp-run"), words[0], str(run), *words[1:], "--output", str(target)]
+            command = [str(BIN / ("regrasp-film" if words[0] == "video" else "regrasp-run")), words[0], str(run), *words[1:], "--output", str(target)]
             started = time.monotonic()
             self.assertEqual(subprocess.run(command, env=environment(), capture_output=True, check=False).returncode, 0)
             whole_s = time.monotonic() - started

@@ -54,6 +54,7 @@ TEST_F(Recordings, ReplayToTheSameStates) {
   ASSERT_EQ(file.segments.size(), 1u);
   EXPECT_EQ(file.segments[0].journal->entries.size(), 4u);
   EXPECT_EQ(file.segments[0].last_tick(), 400);
+  EXPECT_FALSE(file.segments[0].saved.empty());
   ExpectIdentical(file);
   const Json list = client->Result("record.list")["recordings"];
   ASSERT_EQ(list.size(), 1u);

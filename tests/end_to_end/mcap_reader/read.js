@@ -19,7 +19,7 @@ async function main(path) {
     const channel = channels.get(record.channelId);
     count(channel.topic, 0, record.data);
     const message = JSON.parse(Buffer.from(record.data).toString("utf8"));
-    for (const field of schemas.get(channel.schemaId).required)
+    for (const field of schemas.get(channel.schemaId).required ?? [])
       if (!(field in message)) throw new Error(`${channel.topic}: ${field} is in the schema, not in the message`);
   }
   if (stream.done()) {

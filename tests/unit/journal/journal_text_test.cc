@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "core/journal/replay.h"
 
@@ -38,6 +39,22 @@ TEST(JournalText, AConfigurationGivesTheSameSession) {
     }
     EXPECT_EQ(original.StateHash(), copy.StateHash()) << object;
   }
+}
+
+// Until format 2 vertices and triangles were lists in a list.
+TEST(JournalText, AConfigurationOfTheFormerFormatIsRead) {
+  const SessionConfig config = Config("egg");
+  auto json = nlohmann::ordered_json::parse(ConfigText(config, 0));
+  json["format"] = "regrasp-run/1";
+  auto& object = json.at("model").at("object");
+  for (const char* key : {"vertices_O", "triangles"}) {
+    const auto flat = object.at(key);
+    ASSERT_GT(flat.size(), 30u);
+    object[key] = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < flat.size(); i += 3)
+      object[key].push_back({flat[i], flat[i + 1], flat[i + 2]});
+  }
+  EXPECT_EQ(ConfigText(ParseConfig(json.dump()).config, 0), ConfigText(config, 0));
 }
 
 /// Converts to a member of any scalar type: T{Any(), ...} with as many of them as T has members is
@@ -145,6 +162,7 @@ TEST(JournalText, TellsWhatIsWrong) {
           .find("unknown method 'fly'"),
       std::string::npos);
   EXPECT_THROW(ParseConfig(R"({"format":"regrasp-run/2"})"), JournalError);
+  EXPECT_THROW(ParseConfig(R"({"format":"regrasp-run/3"})"), JournalError);
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ class Mcap : public ::testing::Test {
   /// Three chunks of ten messages on two topics.
   void WriteSome() {
     McapWriter writer(path);
-    const auto a = writer.AddChannel("a", R"({"type":"object"})");
-    const auto b = writer.AddChannel("b", R"({"type":"object"})");
+    const auto a = writer.AddChannel("a", "test.a", R"({"type":"object"})");
+    const auto b = writer.AddChannel("b", "test.b", R"({"type":"object"})");
     for (int i = 0; i < 30; ++i) {
       writer.Write(i % 3 ? a : b, static_cast<std::uint64_t>(i),
                    "{\"i\":" + std::to_string(i) + "}");
@@ -64,6 +64,33 @@ TEST_F(Mcap, GivesBackWhatWasWritten) {
   ASSERT_EQ(found.size(), 30u);
   EXPECT_EQ(found[3], "b{\"i\":3}");
   EXPECT_EQ(found[29], "a{\"i\":29}");
+}
+
+TEST_F(Mcap, ReadsOnlyTheChunksThatAreWanted) {
+  WriteSome();
+  std::vector<std::uint64_t> times;
+  const auto keep = [&](const McapMessage& message) { times.push_back(message.time); };
+  const McapSummary summary = ReadMcap(path, keep, [](const McapChunk& chunk) {
+    EXPECT_EQ(chunk.topics, (std::set<std::string, std::less<>>{"a", "b"}));
+    EXPECT_EQ(chunk.end, chunk.start + 9);
+    return chunk.start == 10;
+  });
+  ASSERT_EQ(times.size(), 10u);
+  EXPECT_EQ(times.front(), 10u);
+  EXPECT_TRUE(summary.complete && summary.lost.empty());
+  // Damage in another chunk is not seen, in this one it is.
+  std::string bytes = Bytes();
+  bytes[bytes.find("{\"i\":15}") + 5] = '6';
+  Replace(bytes);
+  times.clear();
+  EXPECT_EQ(ReadMcap(path, keep, [](const McapChunk& c) { return c.start == 0; }).lost.size(), 0u);
+  EXPECT_EQ(ReadMcap(path, keep, [](const McapChunk& c) { return c.start == 10; }).lost.size(), 1u);
+  EXPECT_EQ(times.size(), 10u);
+  // Without an index all is read.
+  Replace(bytes.substr(0, flushed.back()));
+  times.clear();
+  EXPECT_EQ(ReadMcap(path, keep, [](const McapChunk&) { return false; }).lost.size(), 1u);
+  EXPECT_EQ(times.size(), 20u);
 }
 
 TEST_F(Mcap, CutOffAnywhereKeepsEveryFlushedMessage) {

@@ -1,0 +1,89 @@
+// regrasp-film: films of run files. A program of its own, because it links OpenCV, which takes a
+// tenth of a second to start.
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+
+#include "cli/run/program.h"
+#include "cli/run/video.h"
+
+namespace regrasp::run {
+namespace {
+
+std::atomic<int> signal_seen{0};
+static_assert(std::atomic<int>::is_always_lock_free);
+
+/// One line that is written over, for a person who waits; nothing elsewhere.
+class Progress {
+ public:
+  explicit Progress(bool on) : on_(on && ::isatty(STDERR_FILENO) != 0) {}
+  ~Progress() {
+    if (shown_) fmt::print(stderr, "\r\x1b[K");
+  }
+  bool operator()(int done, int total) {
+    const auto now = Clock::now();
+    if (on_ && now - told_ > std::chrono::milliseconds(200) && done > 0) {
+      const double elapsed = std::chrono::duration<double>(now - begin_).count();
+      fmt::print(stderr, "\r{} of {} pictures, {:.0f} s left\x1b[K", done, total,
+                 elapsed * (total - done) / done);
+      std::fflush(stderr);
+      told_ = now;
+      shown_ = true;
+    }
+    return signal_seen == 0;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const bool on_;
+  bool shown_ = false;
+  const Clock::time_point begin_ = Clock::now();
+  Clock::time_point told_;
+};
+
+ExitCode VideoCommand(const Command& command) {
+  VideoOptions options;
+  options.fps = command.Number("--fps", options.fps);
+  options.speed = command.Number("--speed", options.speed);
+  options.stretch = command.stretch();
+  options.scene_only = command.Has("--scene-only");
+  const std::string& out = command.options.at("--output");
+  RunWindow window(command.file,
+                   {std::max(0.0, options.stretch.from_s - kCurveWindow_s), options.stretch.to_s});
+  const Json differences = TellDifferences(window.file());
+  if (!window.note().empty()) Note(window.note());
+  VideoResult result;
+  {
+    Progress progress(!command.json() && !command.Has("--quiet"));
+    result = WriteVideo(&window, options, out,
+                        [&](int done, int total) { return progress(done, total); });
+  }
+  if (result.interrupted) return ExitCode::kInterrupted;
+  Print(command,
+        {{"path", out},
+         {"frames", result.frames},
+         {"duration_s", result.duration_s},
+         {"codec", result.codec},
+         {"differences", differences},
+         {"lost", LossesJson(window.file().lost)}},
+        fmt::format("{}: {} frames, {:.1f} s, {}", out, result.frames, result.duration_s,
+                    result.codec) +
+            LossesText(window.file().lost));
+  return window.file().lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+}  // namespace regrasp::run
+
+int main(int argc, char** argv) {
+  using namespace regrasp::run;
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // when regrasp is killed, so is this
+  for (const int number : {SIGINT, SIGTERM, SIGHUP})
+    std::signal(number, [](int seen) { signal_seen = seen; });
+  return RunVerb(argc, argv, {{"video", VideoCommand}});
+}

@@ -1,0 +1,120 @@
+#include "cli/run/run_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/journal/saved_state.h"
+
+namespace regrasp::run {
+namespace {
+
+/// What comes after the saved state, from there. Throws StateError where the state is of another
+/// build, was changed, or is not of the moment that it says.
+std::unique_ptr<Replay> ReplayFrom(const Journal& journal, const RunSavedState& state) {
+  const auto& entries = journal.entries;
+  const std::size_t n = state.commands;
+  const bool fits = n <= entries.size() && (n == 0 || entries[n - 1].tick <= state.tick) &&
+                    (n == entries.size() || entries[n].tick >= state.tick);
+  if (!fits) throw StateError("saved state: it does not fit the commands");
+  auto rest = std::make_shared<Journal>();
+  rest->config = journal.config;
+  rest->entries.assign(entries.begin() + static_cast<std::ptrdiff_t>(n), entries.end());
+  auto replay = std::make_unique<Replay>(std::move(rest));
+  LoadState(state.bytes, &replay->session());
+  if (replay->session().tick() != state.tick || replay->session().StateHash() != state.state_hash)
+    throw StateError("saved state: of another moment than the file says");
+  return replay;
+}
+
+}  // namespace
+
+RunWindow::RunWindow(const std::string& path, Stretch stretch)
+    : path_(path), stretch_(stretch), file_(ReadJournals(path, &chunks_)) {
+  FindEnd();
+  if (end_tick() < from_tick() || stretch.to_s <= stretch.from_s)
+    throw std::runtime_error("nothing happens in this stretch of time");
+  try {
+    if (const auto state = FindState()) {
+      replay_ = ReplayFrom(*segment().journal, *state);
+      start_tick_ = state->tick;
+      commands_before_ = state->commands;
+      from_saved_state_ = true;
+    }
+  } catch (const std::runtime_error& e) {
+    note_ = std::string(e.what()) + "; executed from the start instead";
+  }
+  if (!replay_) replay_ = std::make_unique<Replay>(segment().journal);
+}
+
+std::int64_t RunWindow::TickOf(double time_s) const {
+  return std::llround(std::min(time_s / segment().journal->config.world.dt, 1e15));
+}
+
+std::uint64_t RunWindow::FileTime(std::int64_t tick) const {
+  return segment().offset_ns +
+         static_cast<std::uint64_t>(
+             std::llround(static_cast<double>(tick) * segment().journal->config.world.dt * 1e9));
+}
+
+void RunWindow::FindEnd() {
+  const double dt_ns = segment().journal->config.world.dt * 1e9;
+  std::uint64_t end = segment().offset_ns;
+  for (const McapChunk& chunk : chunks_) end = std::max(end, chunk.end);
+  if (chunks_.empty()) ReadMcap(path_, [&](const McapMessage& m) { end = std::max(end, m.time); });
+  last_tick_ = std::llround(static_cast<double>(end - segment().offset_ns) / dt_ns);
+}
+
+std::optional<RunSavedState> RunWindow::FindState() const {
+  const std::uint64_t time = FileTime(from_tick());
+  std::uint64_t wanted = 0;
+  for (const McapChunk& chunk : chunks_)
+    if (chunk.topics.contains("saved_states") && chunk.start <= time) wanted = chunk.offset;
+  std::optional<RunSavedState> found;
+  const auto take = [&](const McapMessage& message) {
+    if (message.topic != "saved_states" || message.time > time) return;
+    RunSavedState state = ParseSavedState(message.data);
+    const bool here = state.segment + 1 == static_cast<int>(file_.segments.size());
+    if (here && (!found || state.tick >= found->tick)) found = std::move(state);
+  };
+  ReadMcap(path_, take, [&](const McapChunk& chunk) { return chunk.offset == wanted; });
+  return found;
+}
+
+ReplayResult RunWindow::ReplayStretch(const OnState& on_state) {
+  const std::int64_t from = from_tick(), end = end_tick();
+  const int last = static_cast<int>(file_.segments.size()) - 1;
+  const auto compare = [&](const McapMessage& message) {
+    if (message.topic != "state" || replay_->diverged()) return;
+    int of = 0;
+    const Segment::State state = ParseState(message.data, &of);
+    if (of != last || state.tick < std::max(from, replay_->session().tick()) || state.tick > end)
+      return;
+    if (state.commands < commands_before_) return;  // at the saved state's tick, but before it
+    if (replay_->RunTo(state.tick) && replay_->ApplyDue(state.commands - commands_before_) &&
+        replay_->Compare(state.hash) && on_state)
+      on_state(last, replay_->session());
+  };
+  ReplayResult result;
+  result.segment = last;
+  if (replay_->RunTo(from)) {
+    const McapSummary summary = ReadMcap(path_, compare, [&](const McapChunk& chunk) {
+      return !replay_->diverged() && chunk.topics.contains("state") &&
+             chunk.end >= FileTime(from) && chunk.start <= FileTime(end);
+    });
+    file_.lost.insert(file_.lost.end(), summary.lost.begin(), summary.lost.end());
+    if (!replay_->diverged() && replay_->RunTo(end) && end == last_tick_) replay_->ApplyDue();
+  }
+  result.ticks = replay_->session().tick() - start_tick_;
+  result.compared = replay_->compared();
+  result.commands = static_cast<std::size_t>(std::ranges::count_if(
+      segment().journal->entries,
+      [&](const JournalEntry& entry) { return entry.tick >= start_tick_ && entry.tick <= end; }));
+  if (replay_->diverged()) {
+    result.divergence = replay_->divergence();
+    if (result.divergence->command >= 0)
+      result.divergence->command += static_cast<int>(commands_before_);
+  }
+  return result;
+}
+
+}  // namespace regrasp::run

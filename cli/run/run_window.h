@@ -1,0 +1,60 @@
+#pragma once
+
+/// A stretch of a run file's last segment: from the nearest saved state before it, so that it
+/// begins at once however long the run was.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/run/replay_run.h"
+#include "core/journal/run_messages.h"
+
+namespace regrasp::run {
+
+/// Simulated time [s] of the last segment.
+struct Stretch {
+  double from_s = 0, to_s = 1e9;
+};
+
+class RunWindow {
+ public:
+  /// Reads the journal and begins at the last saved state that is not after `from_s`; at tick 0
+  /// where there is none, or none that can be trusted: note() then says why. Throws McapError,
+  /// JournalError, ModelError.
+  RunWindow(const std::string& path, Stretch stretch);
+
+  /// Executes the stretch and compares every state in it that was recorded.
+  ReplayResult ReplayStretch(const OnState& on_state);
+
+  const RunFile& file() const { return file_; }  ///< its journals
+  const Segment& segment() const { return file_.segments.back(); }
+  Replay& replay() { return *replay_; }
+  /// Where it began, and whether that is a saved state.
+  std::int64_t start_tick() const { return start_tick_; }
+  bool from_saved_state() const { return from_saved_state_; }
+  const std::string& note() const { return note_; }
+  /// The stretch, no longer than the run [ticks].
+  std::int64_t from_tick() const { return TickOf(stretch_.from_s); }
+  std::int64_t end_tick() const { return std::min(TickOf(stretch_.to_s), last_tick_); }
+
+ private:
+  std::int64_t TickOf(double time_s) const;
+  std::uint64_t FileTime(std::int64_t tick) const;
+  /// The last saved state of the segment that is not after the stretch's beginning.
+  std::optional<RunSavedState> FindState() const;
+  void FindEnd();
+
+  std::string path_;
+  Stretch stretch_;
+  std::vector<McapChunk> chunks_;
+  RunFile file_;
+  std::int64_t last_tick_ = 0;
+  std::unique_ptr<Replay> replay_;
+  std::int64_t start_tick_ = 0;
+  bool from_saved_state_ = false;
+  std::size_t commands_before_ = 0;  ///< of the segment, in the saved state
+  std::string note_;
+};
+
+}  // namespace regrasp::run
