@@ -97,7 +97,9 @@ class Maker {
     search_.task.radius = 0.5e-3 * size_mm_;
     gravity_W_ = 9.81 * Vector3d(0, std::cos(tilt_), std::sin(tilt_));
     search_.task.weight = 0.08 * gravity_W_;
-    search_.progress = [this](double done, double) { progress_.Show("searching a grasp", done); };
+    search_.progress = [this](double done, double) {
+      progress_.Show("searching a grasp" + without_, done);
+    };
   }
 
   Answer Make() {
@@ -143,7 +145,8 @@ class Maker {
     hand_.name = out_.stem().string();
   }
 
-  /// With every finger; where they cannot all touch and hold, with one or two left out.
+  /// With every finger; where they cannot all touch and hold, with one left out (the best choice of
+  /// it), else two (the first that holds).
   void Search() {
     const HandLayout whole = guess_.layout;
     const HandModel all = hand_;
@@ -151,7 +154,10 @@ class Maker {
     for (int out = 0; out <= 2 && !best_.Good() && (out == 0 || n - out >= 3); ++out)
       for (int a = 0; a < n; ++a)
         for (int b = a; b < n; ++b) {
+          if (out == 2 && best_.Good()) break;
           if (out == 0 ? a + b > 0 : (b == a) != (out == 1)) continue;
+          without_ = out == 0 ? "" : " without " + all.fingers[static_cast<std::size_t>(a)].name;
+          if (out == 2) without_ += ", " + all.fingers[static_cast<std::size_t>(b)].name;
           const HandLayout layout = Without(all, whole, out == 0 ? FingerSet{} : FingerSet{a, b});
           hand_ = LoadHand(urdf_, layout, options_.load());
           hand_.name = out_.stem().string();
@@ -192,7 +198,7 @@ class Maker {
     const std::size_t count = std::min<std::size_t>(grasps.size(), 4);
     Found best;
     for (std::size_t k = 0; k < count; ++k) {
-      progress_.Show("finding a way in, trying it", static_cast<double>(k) / 4);
+      progress_.Show("finding a way in" + without_ + ", trying it", static_cast<double>(k) / 4);
       Found found;
       found.grasp = grasps[k];
       found.way = FindWayIn(hand_, search_.task, found.grasp, 6, &random);
@@ -347,6 +353,7 @@ class Maker {
   HandGuess guess_;
   HandModel hand_;
   std::vector<std::string> left_out_;  // names of fingers
+  std::string without_;                // of the search that runs, for its progress
   ModelReport report_;
   Found best_;
 };
