@@ -74,7 +74,7 @@ void FingerGait::BeginCycle() {
   refused_finger_ = -1;
   sought_ = false;
   room_for_ = -1;
-  made_room_ = sought_for_ = FingerSet();
+  made_room_ = sought_for_ = put_off_ = FingerSet();
 }
 
 StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) const {

@@ -141,6 +141,7 @@ class FingerGait {
     v("regrasp_began", regrasp_began_);
     v("made_room", made_room_);
     v("sought_for", sought_for_);
+    v("put_off", put_off_);
     v("misses", misses_);
     v("rubs", rubs_);
     v("forgiveness", forgiveness_);
@@ -260,8 +261,9 @@ class FingerGait {
   double error_position_ = 0, error_rotation_ = 0;  // when the regrasp began [m, rad]
   bool regrasp_began_ = false;
   FingerSet made_room_, sought_for_;  // in this cycle, for which fingers
-  int rubs_ = 0;                      // fingers that have slid before they left
-  int misses_ = 0;                    // in a row
+  FingerSet put_off_;  // in this cycle: others stood where they would land, they come last
+  int rubs_ = 0;       // fingers that have slid before they left
+  int misses_ = 0;     // in a row
   Forgiveness forgiveness_;
   int cycles_ = 0, regrasps_ = 0;
   Happened happened_;

@@ -36,7 +36,14 @@ void FingerGait::EndPlan(const ControlTick& tick) {
                   : far > tick.gait.skip_distance &&
                         landing.gain > tick.gait.worth + tick.gait.worth_scarce * scarce);
   Enter(GaitPhase::kChoose);
-  if (landing.found && worth) StartRegrasp(tick, finger, landing);
+  const bool blocked = landing.blocked && !landing.stays;
+  if (blocked && !makes_room && !put_off_.contains(finger)) {
+    put_off_.add(finger);  // the others may clear the way
+    waiting_.add(finger);
+    return;
+  }
+  const bool stands = tick.finger(finger).ticks_without_contact == 0;
+  if (landing.found && worth && !(blocked && stands)) StartRegrasp(tick, finger, landing);
 }
 
 void FingerGait::StartRegrasp(const ControlTick& tick, int finger, const Landing& landing) {
@@ -110,10 +117,14 @@ void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench
       room_for_ = -1;
     }
   }
-  for (const GaitStep& step : order_) {
-    if (!waiting_.contains(step.finger) || !MayLeave(tick, step.finger)) continue;
-    waiting_.remove(step.finger);
-    return StartPlan(step.finger, tick.gait.plan_reach, tick);
+  for (const bool put_off : {false, true}) {
+    for (const GaitStep& step : order_) {
+      if (put_off_.contains(step.finger) != put_off || !waiting_.contains(step.finger) ||
+          !MayLeave(tick, step.finger))
+        continue;
+      waiting_.remove(step.finger);
+      return StartPlan(step.finger, tick.gait.plan_reach, tick);
+    }
   }
   if (waiting_.empty()) return EndCycle(tick, wrench);
   // The margins still remember the finger before in the air.

@@ -112,8 +112,10 @@ void Hop::Across(const ControlTick& tick, const Target& target, bool down, Finge
   if (over_surface_ && distance > 2 * parameters.lift_height) KeepAbove(tick);
   const double there = over_surface_ ? kThereOnObject : kThere;
   late_ticks_ = distance > there ? 0 : late_ticks_ + 1;
-  // Something is in the way: the finger stands where it touches, rather than push the object.
-  if (Touches(tick, finger) && path_ > parameters.clear_distance) {
+  // Something is in the way: the finger stands where it touches, rather than push the object. One
+  // that a joint limit keeps on the surface slides on, to where its joints let it off.
+  left_ |= !finger.in_contact;
+  if (left_ && Touches(tick, finger) && path_ > parameters.clear_distance) {
     Enter(Phase::kBlocked);
     return;
   }

@@ -46,6 +46,7 @@ class Hop {
     v("finger", finger_, v.Finger());
     v("over_surface", over_surface_);
     v("went_back", went_back_);
+    v("left", left_);
     v("ticks", ticks_);
     v("p_OLeft", p_OLeft_);
     v("normal_OLeft", normal_OLeft_);
@@ -69,7 +70,8 @@ class Hop {
   Phase phase_ = Phase::kIdle;
   int finger_ = -1;
   bool over_surface_ = false, went_back_ = false;
-  int ticks_ = 0;                                                           // in this phase
+  bool left_ = false;  // has been off the surface
+  int ticks_ = 0;      // in this phase
   Vector3d p_OLeft_ = Vector3d::Zero(), normal_OLeft_ = Vector3d::UnitZ();  // where it left, in O
   int late_ticks_ = 0;                       // kAcross: since the target arrived above its end
   Vector3d p_target_W_ = Vector3d::Zero();   // of the fingertip centre

@@ -20,6 +20,7 @@ constexpr double kMissing = 0.0015;      // a tip this far from its target does 
 constexpr double kFar2 = 0.010 * 0.010;  // distance from home that costs kFarCost [m²]
 constexpr double kFarCost = 0.3;
 constexpr double kClearance = 0.001;  // to links of other fingers [m]
+constexpr double kOverlap = 0.0005;   // with one of them: the finger does not get there [m]
 constexpr double kKnown = 0.35;       // farther from all that was felt the surface is unknown [rad]
 constexpr double kUnknownCost = 1.0;  // per rad from what was felt
 constexpr double kPenalty = 2.0;
@@ -120,8 +121,7 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
   const FingerPosture there = ReachFor(hand, finger, now, p_WF, kLimitMargin, kReachSteps);
   const double missing = (there.p_WF - p_WF).norm();
-  landing.score = CheapScore(tick, there, landing.normal_O, surface.unknown, &landing.reserve) -
-                  kFarCost * offset.squaredNorm() / kFar2;
+  landing.score = CheapScore(tick, there, &landing) - kFarCost * offset.squaredNorm() / kFar2;
   if (missing > kMissing) landing.score -= kPenalty * (1 + missing / 0.01);
   const bool listed =
       !shortlist_.full() || landing.score > shortlist_[shortlist_.size() - 1].landing.score;
@@ -131,12 +131,13 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
 }
 
 double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& there,
-                               const Vector3d& normal_O, double unknown, double* reserve) const {
+                               Landing* landing) const {
   const HandModel& hand = tick.hand;
   const Estimate& estimate = tick.estimate;
   const int finger = request_.finger;
+  const double unknown = landing->unknown;
   double score = -kUnknownCost * unknown - kPenalty * std::max(0.0, unknown - kKnown);
-  const double facing = there.along_W.dot(estimate.q_WO * normal_O);
+  const double facing = there.along_W.dot(estimate.q_WO * landing->normal_O);
   if (facing > tick.exploration.least_facing)
     score -= kPenalty * (facing - tick.exploration.least_facing);
   double gap = kClearance;
@@ -145,11 +146,16 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
     for (const Bone* own : {&there.tip, &there.middle})
       for (const Bone* its : {&other.tip, &other.middle}) gap = std::min(gap, Gap(*own, *its));
   }
-  if (gap < kClearance) score -= kPenalty * std::min(1.0, (kClearance - gap) / 0.002);
+  if (gap < kClearance) score -= kPenalty * std::min(5.0, (kClearance - gap) / 0.002);
+  landing->blocked = gap < -kOverlap;
   if (!request_.axis_W.isZero()) {
-    *reserve = MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W,
-                             tick.gait.limit_margin, tick.gait.reserve_wanted);
-    score += Share(*reserve, tick.gait.reserve_wanted);
+    landing->reserve = MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W,
+                                     tick.gait.limit_margin, tick.gait.reserve_wanted);
+    score += Share(landing->reserve, tick.gait.reserve_wanted);
+    // The finger with the least reserve ends the coming motion for all of them.
+    const double short_of =
+        1 - Share(landing->reserve, std::min(tick.gait.step_rad, tick.gait.reserve_wanted));
+    score -= kPenalty * short_of * short_of;
   }
   return score;
 }
@@ -168,7 +174,7 @@ LandingPlan::Candidate LandingPlan::Stay(const ControlTick& tick) const {
   const FingerPosture now =
       PostureAt(tick.hand, request_.finger, AnglesOf(tick.hand, request_.finger, tick.estimate.q));
   landing.score =
-      CheapScore(tick, now, landing.normal_O, 0, &landing.reserve) -
+      CheapScore(tick, now, &landing) -
       LinkPenalty(tick, request_.finger, now, TurnAhead(tick, request_, landing.reserve));
   const double far2 =
       TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC, request_.home.normal_W)

@@ -5,7 +5,8 @@
 /// Candidates lie in rings about the finger's home, projected onto the felt surface. Each is scored
 /// by shares of what is wanted, at most 1 each:
 ///
-///   J = reserve / reserve wanted − 0.3 (distance from home / 10 mm)²
+///   J = reserve / reserve wanted − 2 (share of the coming step that the reserve lacks)²
+///       − 0.3 (distance from home / 10 mm)²
 ///       + ½ (mean + least over the other fingers k of ρ without k / ρ wanted) + ρ without the next
 ///       / ρ wanted − penalties
 ///
@@ -26,6 +27,7 @@ namespace regrasp {
 struct Landing {
   bool found = false;
   bool stays = false;                     ///< the best is where the finger stands
+  bool blocked = false;                   ///< a link of another finger is in the way
   Vector3d p_OC = Vector3d::Zero();       ///< contact [m]
   Vector3d p_OF = Vector3d::Zero();       ///< fingertip centre [m]
   Vector3d normal_O = Vector3d::UnitZ();  ///< outward
@@ -38,6 +40,7 @@ struct Landing {
   void Fields(V& v) {
     v("found", found);
     v("stays", stays);
+    v("blocked", blocked);
     v("p_OC", p_OC);
     v("p_OF", p_OF);
     v("normal_O", normal_O);
@@ -105,8 +108,8 @@ class LandingPlan {
   Candidate Rate(const ControlTick& tick, int index) const;
   /// Where the finger stands.
   Candidate Stay(const ControlTick& tick) const;
-  double CheapScore(const ControlTick& tick, const FingerPosture& there, const Vector3d& normal_O,
-                    double unknown, double* reserve) const;
+  /// Of a landing with the finger at `there`; fills in its reserve and whether it is blocked.
+  double CheapScore(const ControlTick& tick, const FingerPosture& there, Landing* landing) const;
   void Remember(const Candidate& candidate);
   /// One load margin more of the candidate under examination; true when it is fully rated.
   bool Examine(const ControlTick& tick);

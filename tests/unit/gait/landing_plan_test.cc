@@ -129,6 +129,77 @@ TEST_F(LandingPlanTest, KeepsOffGroundThatNobodyHasFelt) {
   EXPECT_LT(plan.landing().unknown, 0.36);
 }
 
+// A finger at a joint limit holds up the turn for all of them: it goes on to where nothing is felt
+// yet rather than stay on known ground.
+TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
+  const Vector3d axis_W = -Vector3d::UnitZ();
+  for (int finger = 0; finger < hand.num_fingers(); ++finger) {
+    SCOPED_TRACE(hand.fingers[finger].name);
+    const LandingPlan::Request request = Home(finger);
+    const FingerPosture at_home = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
+    const double reserve =
+        MotionReserve(hand, finger, at_home, estimate.p_WO, axis_W, gait.limit_margin, 3.0);
+    if (reserve < gait.step_rad) continue;
+    // The object turns nearly as far as the finger follows.
+    const Vector3d r = at_home.p_WF - estimate.p_WO;
+    FingerPosture at_end = at_home;
+    for (double angle = 0; angle <= reserve - 0.1; angle += 0.02)
+      at_end = ReachFor(hand, finger, at_end,
+                        estimate.p_WO + FromRotationVector(angle * axis_W) * r, 0.0, 10);
+    JointVector q = estimate.q;
+    const auto& joints = hand.fingers[finger].joints;
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      q[joints[k]] = at_end.q[static_cast<Eigen::Index>(k)];
+    estimate = TouchingEstimate(hand, q);
+    const double rest =
+        MotionReserve(hand, finger, at_end, estimate.p_WO, axis_W, gait.limit_margin, 3.0);
+    ASSERT_LT(rest, 0.19);
+    ASSERT_GT(rest, 0.05);
+    // Only where it stands the object has been felt.
+    felt.Reset();
+    const Vector3d here = estimate.fingers[finger].p_WC - estimate.p_WO;
+    for (int i = 0; i < FeltSurface::kCells; ++i) {
+      const Vector3d d = FeltSurface::CellDirection(i);
+      if (d.dot(here.normalized()) < std::cos(0.2)) continue;
+      for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(kRadius * d, d);
+    }
+    LandingPlan plan;
+    plan.Start(request);
+    Plan(&plan);
+    EXPECT_FALSE(plan.landing().stays);
+    EXPECT_GT(plan.landing().reserve, 0.5 * gait.step_rad);
+    // The more so the farther the coming step goes.
+    const double gain = plan.landing().gain;
+    gait.step_rad = 0.05;
+    plan.Start(request);
+    Plan(&plan);
+    EXPECT_GT(gain, plan.landing().gain + 1);
+    gait.step_rad = GaitParameters().step_rad;
+    estimate = TouchingEstimate(hand, GraspPosture(hand));
+  }
+}
+
+TEST_F(LandingPlanTest, TellsThatAnotherFingerStandsInTheWay) {
+  const int ring = hand.FindFinger("ring"), middle = hand.FindFinger("middle");
+  LandingPlan::Request request = Home(middle);
+  request.reach = 0.002;
+  LandingPlan plan;
+  plan.Start(request);
+  Plan(&plan);
+  EXPECT_FALSE(plan.landing().blocked);
+  // Its home is where the ring finger stands.
+  request.home = Home(ring).home;
+  plan.Start(request);
+  Plan(&plan);
+  EXPECT_FALSE(plan.landing().stays && plan.landing().blocked);
+  EXPECT_TRUE(plan.landing().stays || plan.landing().blocked);
+  // In the air it cannot stay.
+  estimate.fingers[middle].ticks_without_contact = 100;
+  plan.Start(request);
+  Plan(&plan);
+  EXPECT_TRUE(plan.landing().blocked);
+}
+
 // Least height of the finger's middle link above the felt surface, once its tip has landed [m].
 double HeightOfMiddleLink(const ControlTick& tick, int finger, const Landing& landing) {
   const Vector3d& p_WO = tick.estimate.p_WO;
