@@ -230,6 +230,38 @@ class FullDisk(SystemCase):
         self.assertEqual([f for f in os.listdir(self.out) if f.startswith(".draft") or f.endswith(".checkpoint")], [])
 
 
+class Outputs(SystemCase):
+    def drop(self, wire):
+        """The same life each time: grasp, and a push that no grasp bears. Its incident's file."""
+        wire.result("reset", seed=1)
+        wire.result("job.wait", id=wire.result("grasp")["job"])
+        wire.result("push", force_n=[0, 0, 40], duration_s=0.3)
+        wire.result("job.wait", id=wire.result("step", ticks=1500)["job"])
+        return pathlib.Path(wire.result("status")["incident"]["record"])
+
+    def test_incidents_of_the_same_tick_do_not_take_each_others_names(self):
+        wire = self.start("--clock", "lockstep", "--speed", "max")
+        first = self.drop(wire)
+        before = first.read_bytes()
+        second = self.drop(wire)
+        self.assertEqual(second.name, first.name.replace(".json", "-2.json"))
+        self.assertEqual(first.read_bytes(), before)
+        wire.close()
+
+    def test_nobody_else_may_write_to_what_is_written(self):
+        wire = self.start("--clock", "lockstep", "--speed", "max", preexec=lambda: os.umask(0))
+        wire.result("record.start", file="r.mcap")
+        self.drop(wire)
+        wire.result("record.stop")
+        wire.result("checkpoint.save", name="c")
+        wire.result("plot", name="scene", file="s.png")
+        written = [self.out, *self.out.iterdir()]
+        self.assertGreater(len(written), 4, written)
+        for path in written:
+            self.assertEqual(path.stat().st_mode & 0o022, 0, path)
+        wire.close()
+
+
 class Kills(SystemCase):
     def test_the_daemon_while_it_writes_everything_at_once(self):
         r = random.Random(11)
