@@ -230,6 +230,27 @@ class FullDisk(SystemCase):
         self.assertEqual([f for f in os.listdir(self.out) if f.startswith(".draft") or f.endswith(".checkpoint")], [])
 
 
+class Turns(SystemCase):
+    def test_one_client_with_many_lines_does_not_hold_the_others_up(self):
+        watcher = self.start("--clock", "lockstep", "--speed", "max")
+        watcher.result("subscribe", topic="events")
+        many, one = Wire(self.socket), Wire(self.socket)
+        many.result("version")
+        one.result("version")
+        # Both are there when the daemon next looks, the 300 lines first.
+        self.daemon.send_signal(signal.SIGSTOP)
+        line = {"jsonrpc": "2.0", "method": "noise.set", "params": {"position_m": 0.001}}
+        many.socket.sendall(300 * (json.dumps(line) + "\n").encode())
+        one.send("noise.set", position_m=0.002)
+        self.daemon.send_signal(signal.SIGCONT)
+        texts = [watcher.event("noise")["text"] for _ in range(301)]
+        others = [i for i, text in enumerate(texts) if text != max(set(texts), key=texts.count)]
+        self.assertEqual(len(others), 1, others)
+        self.assertLessEqual(others[0], 2 * 32)  # a turn is 32 lines
+        for wire in (watcher, many, one):
+            wire.close()
+
+
 class Outputs(SystemCase):
     def drop(self, wire):
         """The same life each time: grasp, and a push that no grasp bears. Its incident's file."""
