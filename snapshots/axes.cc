@@ -70,9 +70,12 @@ void DrawGrid(Canvas* canvas, const Panel& panel, bool x_values) {
     canvas->Text({a.x - 12, y}, panel.y.TickText(v), {.size = 19, .align_x = AlignX::kRight});
   }
   if (x_values)
-    canvas->Text({a.x + a.width / 2, below + 44}, panel.x.label,
+    canvas->Text({a.x + a.width / 2, below + (canvas->narrow() ? 34 : 44)}, panel.x.label,
                  {.size = 21, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
-  canvas->Text({a.x - 84, a.y + a.height / 2}, panel.y.label,
+  const bool fits =
+      panel.y.short_label.empty() || canvas->TextWidth(panel.y.label, 21) < a.height + 10;
+  canvas->Text({a.x - (canvas->narrow() ? 66 : 84), a.y + a.height / 2},
+               fits ? panel.y.label : panel.y.short_label,
                {.size = 21, .align_x = AlignX::kCentre, .upwards = true});
 }
 
@@ -134,21 +137,109 @@ double DrawLegend(Canvas* canvas, Point2 at, const std::string& heading,
     y += 30;
   }
   for (const LegendEntry& entry : entries) {
-    entry.symbol(canvas, {at.x + 22, y + 10});
-    canvas->Text({at.x + 56, y + 10}, entry.text, {.size = 18});
+    if (entry.symbol) entry.symbol(canvas, {at.x + 22, y + 10});
+    canvas->Text({at.x + (entry.symbol ? 56 : 0), y + 10}, entry.text,
+                 {.size = 18, .colour = entry.colour, .bold = entry.bold});
     y += 27;
   }
   return y;
 }
 
-void DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts) {
-  if (!canvas->with_title()) return;
-  const double left = 40, room = canvas->width() - 2 * left;
+namespace {
+
+constexpr double kLine = 22, kGap = 16, kSymbol = 50;  // of legends below the axes
+constexpr double kXAxis = 68;                          // room for values and label of the x axis
+
+/// Legends in lines that wrap; returns the y below them. `canvas` only measures where it is null.
+double FlowLegends(const Canvas& measure, Canvas* canvas, Point2 at, double width,
+                   std::span<const LegendGroup> groups) {
+  double x = at.x, y = at.y;
+  const auto place = [&](double wide) {
+    if (x > at.x && x + wide > at.x + width) {
+      x = at.x;
+      y += kLine;
+    }
+    const Point2 here(x, y + kLine / 2);
+    x += wide + kGap;
+    return here;
+  };
+  for (const LegendGroup& group : groups) {
+    if (group.entries.empty()) continue;
+    if (x > at.x) y += kLine;
+    x = at.x;
+    if (!group.heading.empty()) {
+      const Point2 here = place(measure.TextWidth(group.heading, 18, true));
+      if (canvas) canvas->Text(here, group.heading, {.size = 18, .bold = true});
+    }
+    for (const LegendEntry& entry : group.entries) {
+      const double symbol = entry.symbol ? kSymbol : 0;
+      const Point2 here = place(symbol + measure.TextWidth(entry.text, 18, entry.bold));
+      if (!canvas) continue;
+      if (entry.symbol) entry.symbol(canvas, here + Point2(22, 0));
+      canvas->Text(here + Point2(symbol, 0), entry.text,
+                   {.size = 18, .colour = entry.colour, .bold = entry.bold});
+    }
+  }
+  return y + kLine;
+}
+
+}  // namespace
+
+Layout::Layout(const Canvas& canvas, std::span<const LegendGroup> groups) {
+  left = canvas.narrow() ? 94 : 150;
+  width = canvas.width() - left - (canvas.narrow() ? 14 : 290);
+  bottom = canvas.height() - 90;
+  if (canvas.narrow())
+    bottom = canvas.height() - kXAxis - 6 -
+             FlowLegends(canvas, nullptr, {14, 0}, canvas.width() - 28, groups);
+}
+
+void Layout::DrawLegends(Canvas* canvas, std::span<const LegendGroup> groups) const {
+  if (canvas->narrow()) {
+    FlowLegends(*canvas, canvas, {14, bottom + kXAxis}, canvas->width() - 28, groups);
+    return;
+  }
+  double y = 0;
+  for (const LegendGroup& group : groups)
+    if (!group.entries.empty())
+      y = DrawLegend(canvas, {left + width + 28, std::max(y, group.y)}, group.heading,
+                     group.entries) +
+          10;
+}
+
+double DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts) {
+  const bool narrow = canvas->narrow();
+  if (!canvas->with_title()) return narrow ? 14 : 104;
+  const double left = narrow ? 14 : 40, room = canvas->width() - 2 * left;
+  constexpr double kLeastFacts = 15;  // smaller ones go into another line
   const auto fitted = [&](const std::string& text, double size, bool bold) {
     return std::min(size, size * room / std::max(1.0, canvas->TextWidth(text, size, bold)));
   };
-  canvas->Text({left, 38}, title, {.size = fitted(title, 28, true), .bold = true});
-  canvas->Text({left, 74}, facts, {.size = fitted(facts, 18, false), .colour = kGrey});
+  double y = narrow ? 24 : 38;
+  canvas->Text({left, y}, title, {.size = fitted(title, narrow ? 24 : 28, true), .bold = true});
+  y += narrow ? 28 : 36;
+  const double size = fitted(facts, 18, false);
+  if (size >= kLeastFacts && !narrow) {
+    canvas->Text({left, y}, facts, {.size = size, .colour = kGrey});
+    return y + 30;
+  }
+  std::string line, rest = facts;
+  const auto put = [&] {
+    canvas->Text({left, y}, line, {.size = 16, .colour = kGrey});
+    y += narrow ? 19 : 22;
+    line.clear();
+  };
+  constexpr std::string_view kBetween = " · ";
+  while (!rest.empty()) {
+    const auto end = rest.find(kBetween);
+    const std::string fact = rest.substr(0, end);
+    rest = end == std::string::npos ? "" : rest.substr(end + kBetween.size());
+    const std::string longer = line.empty() ? fact : line + std::string(kBetween) + fact;
+    if (!line.empty() && canvas->TextWidth(longer, 16) > room) put();
+    line = line.empty() ? fact : line + std::string(kBetween) + fact;
+  }
+  put();
+  return y + (narrow ? 2 : 8);
 }
 
 }  // namespace regrasp

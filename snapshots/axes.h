@@ -17,6 +17,7 @@ struct Axis {
   double lo = 0, hi = 1;
   double step = 0.2;  ///< between ticks: 1, 2 or 5 times a power of ten
   std::string label;
+  std::string short_label = {};  ///< where `label` is longer than the axis
   /// Multiples of `step` inside [lo, hi].
   std::vector<double> Ticks() const;
   /// The value with as many decimals as the step needs, and a true minus sign.
@@ -58,10 +59,12 @@ void DrawFrame(Canvas* canvas, const Panel& panel);
 void DrawCurve(Canvas* canvas, const Panel& panel, std::span<const double> xs,
                std::span<const double> ys, const Pen& pen);
 
-/// One line of a legend: a drawing 44 wide about a point, and a text.
+/// One line of a legend: a drawing 44 wide about a point (or none), and a text.
 struct LegendEntry {
   std::string text;
   std::function<void(Canvas*, Point2 middle)> symbol;
+  Colour colour = kInk;  ///< of the text
+  bool bold = false;
 };
 LegendEntry LineEntry(std::string text, Pen pen);
 LegendEntry MarkEntry(std::string text, Marker marker, Colour colour);
@@ -69,7 +72,22 @@ LegendEntry MarkEntry(std::string text, Marker marker, Colour colour);
 double DrawLegend(Canvas* canvas, Point2 at, const std::string& heading,
                   std::span<const LegendEntry> entries);
 
-/// Title and one line of facts at the top of the sheet; long facts are set smaller to fit.
-void DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts);
+/// A heading and what is under it. Beside the axes it stands at `y` or below the one before it.
+struct LegendGroup {
+  std::string heading;
+  std::vector<LegendEntry> entries;
+  double y = 0;
+};
+/// Where axes go on a sheet, and where their legends: in a column at the right, or in lines below
+/// where the sheet is narrow. Make it before the axes: a narrow sheet needs to know how many lines.
+struct Layout {
+  double left, width, bottom;  ///< of the axes; their x axis needs the room below `bottom`
+  Layout(const Canvas& canvas, std::span<const LegendGroup> groups);
+  void DrawLegends(Canvas* canvas, std::span<const LegendGroup> groups) const;
+};
+
+/// Title and facts at the top of the sheet; long facts are set smaller, then in several lines.
+/// Returns the y below them; without a title the upper margin.
+double DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts);
 
 }  // namespace regrasp

@@ -16,9 +16,11 @@ namespace regrasp {
 namespace {
 
 constexpr double kLogicalWidth = 1600;
-constexpr double kSmallestText = 15;  // of all pictures, logical
-constexpr double kLeastText_pt = 7;   // on paper
-constexpr double kNarrowest = 1000;   // logical: curves and legends side by side need so much
+constexpr double kSmallestText = 15;      // of all pictures, logical
+constexpr double kNarrowest = 1000;       // logical: curves and legends side by side need so much
+constexpr double kNarrowestColumn = 400;  // logical: curves with their legends below
+constexpr double kNarrowText = 0.8;       // of the size in a wide picture, but kSmallestText
+constexpr double kSubscript = 0.7, kSubscriptDrop = 0.2;  // of the text's size
 constexpr std::array<const char*, 5> kSuffixes = {".png", ".jpg", ".jpeg", ".pdf", ".svg"};
 
 std::string LowerSuffix(const std::string& path) {
@@ -52,23 +54,31 @@ std::unique_ptr<Sheet> MakeSheet(const SheetSize& size, const Fonts& fonts) {
 
 }  // namespace
 
-CanvasSize SizeOf(const PlotOptions& options) {
+CanvasSize SizeOf(const PlotOptions& options, double narrow_height) {
   CanvasSize size{options.width, options.height};
   size.with_title = options.with_title;
   if (options.width_mm <= 0) return size;
   size.width_mm = options.width_mm;
+  if (options.dpi > 0) {
+    size.width_px = static_cast<int>(std::lround(options.width_mm / 25.4 * options.dpi));
+    size.height_px = options.height * size.width_px / options.width;
+  }
   const double width_pt = options.width_mm * 72 / 25.4;
+  const double wanted = width_pt * kSmallestText / options.font_pt;
+  size.narrow = wanted < kNarrowest && narrow_height > 0;
   size.logical_width =
-      std::clamp(width_pt * kSmallestText / kLeastText_pt, kNarrowest, kLogicalWidth);
+      std::clamp(wanted, size.narrow ? kNarrowestColumn : kNarrowest, kLogicalWidth);
   // As much height as a wide picture has: the print becomes taller instead.
-  size.height_px =
-      static_cast<int>(std::lround(options.height * kLogicalWidth / size.logical_width));
+  const double grown = size.narrow ? narrow_height * size.width_px / size.logical_width
+                                   : size.height_px * kLogicalWidth / size.logical_width;
+  size.height_px = static_cast<int>(std::lround(grown));
   return size;
 }
 
 Canvas::Canvas(const CanvasSize& size, std::string path)
     : path_(std::move(path)),
       with_title_(size.with_title),
+      narrow_(size.narrow),
       size_(SizeOf(size, path_)),
       fonts_(path_),
       sheet_(MakeSheet(size_, fonts_)) {}
@@ -81,8 +91,54 @@ void Canvas::Polygon(std::span<const Point2> corners, Colour fill) {
 void Canvas::FillBox(const Box& box, Colour fill) { sheet_->FillBox(box, fill); }
 void Canvas::Disc(Point2 centre, double radius, Colour fill) { sheet_->Disc(centre, radius, fill); }
 void Canvas::Paste(const cv::Mat& bgr, const Box& box) { sheet_->Paste(bgr, box); }
+std::vector<Canvas::Piece> Canvas::Pieces(const std::string& utf8) {
+  std::vector<Piece> pieces;
+  for (std::size_t at = 0; at < utf8.size();) {
+    const std::size_t open = std::min(utf8.find("_{", at), utf8.size());
+    if (open > at) pieces.push_back({utf8.substr(at, open - at)});
+    if (open == utf8.size()) break;
+    const std::size_t close = std::min(utf8.find('}', open), utf8.size());
+    pieces.push_back({utf8.substr(open + 2, close - open - 2), true});
+    at = close + 1;
+  }
+  return pieces;
+}
+
+double Canvas::SetSize(double size) const {
+  return narrow_ ? std::max(kSmallestText, kNarrowText * size) : size;
+}
+
+double Canvas::PieceWidth(const Piece& piece, double size, bool bold) const {
+  int baseline = 0;
+  const double own = piece.subscript ? kSubscript * size : size;
+  const int em = std::max(4, static_cast<int>(std::lround(own * scale())));
+  return (bold ? fonts_.bold : fonts_.regular)->getTextSize(piece.text, em, -1, &baseline).width /
+         scale();
+}
+
 void Canvas::Text(Point2 at, const std::string& utf8, const TextStyle& style) {
-  if (!utf8.empty()) sheet_->Text(at, utf8, style);
+  TextStyle set = style;
+  set.size = SetSize(style.size);
+  const std::vector<Piece> pieces = Pieces(utf8);
+  if (pieces.empty()) return;
+  if (pieces.size() == 1 && !pieces[0].subscript) return sheet_->Text(at, utf8, set);
+  const double share = style.align_x == AlignX::kLeft     ? 0
+                       : style.align_x == AlignX::kCentre ? 0.5
+                                                          : 1;
+  const Point2 along = style.upwards ? Point2(0, -1) : Point2(1, 0);
+  const Point2 down = style.upwards ? Point2(1, 0) : Point2(0, 1);
+  // All pieces stand on one baseline.
+  Point2 pen = at - along * (share * TextWidth(utf8, style.size, style.bold));
+  if (style.align_y == AlignY::kMiddle) pen += down * (kMiddleOfLine * set.size);
+  if (style.align_y == AlignY::kTop) pen += down * (kTopOfLine * set.size);
+  for (const Piece& piece : pieces) {
+    TextStyle own = set;
+    own.align_x = AlignX::kLeft;
+    own.align_y = AlignY::kBaseline;
+    own.size = piece.subscript ? kSubscript * set.size : set.size;
+    sheet_->Text(pen + down * (piece.subscript ? kSubscriptDrop * set.size : 0), piece.text, own);
+    pen += along * PieceWidth(piece, set.size, style.bold);
+  }
 }
 
 void Canvas::Polyline(std::span<const Point2> points, const Pen& pen) {
@@ -202,10 +258,9 @@ void Canvas::Arrow(Point2 tail, Point2 head, const Pen& pen, double halo) {
 }
 
 double Canvas::TextWidth(const std::string& utf8, double size, bool bold) const {
-  int baseline = 0;
-  const int em = std::max(4, static_cast<int>(std::lround(size * scale())));
-  return (bold ? fonts_.bold : fonts_.regular)->getTextSize(utf8, em, -1, &baseline).width /
-         scale();
+  double width = 0;
+  for (const Piece& piece : Pieces(utf8)) width += PieceWidth(piece, SetSize(size), bold);
+  return width;
 }
 
 cv::Size Canvas::PixelsOf(const Box& box) const {

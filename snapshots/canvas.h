@@ -29,10 +29,12 @@ struct CanvasSize {
   double width_mm = 180;        ///< as printed: of a PDF or SVG, and the resolution a PNG names
   double logical_width = 1600;  ///< of the sheet; less makes everything on it larger
   bool with_title = true;
+  bool narrow = false;  ///< smaller text for a layout with its legends below
 };
-/// The size that `options` ask for. With a printed width of 165 mm or more the text is at least 7
-/// pt high on paper; below that it shrinks with the picture.
-CanvasSize SizeOf(const PlotOptions& options);
+/// The size that `options` ask for. On paper the text is at least `font_pt` high: where the printed
+/// width leaves no room for legends beside the axes, a picture that has a narrow layout, of
+/// `narrow_height` logical units, gets that; one that has none (0) shrinks with its text.
+CanvasSize SizeOf(const PlotOptions& options, double narrow_height = 0);
 
 class Canvas {
  public:
@@ -45,6 +47,8 @@ class Canvas {
   double unit() const { return size_.unit; }
 
   bool with_title() const { return with_title_; }
+  /// Legends go below the axes.
+  bool narrow() const { return narrow_; }
 
   /// Everything until Unclip() stays inside `box`.
   void Clip(const Box& box);
@@ -63,6 +67,7 @@ class Canvas {
   }
   /// From tail to head (the tip). Heads shrink with short arrows.
   void Arrow(Point2 tail, Point2 head, const Pen& pen, double halo = 0);
+  /// "S_{L}" sets the L as a subscript.
   void Text(Point2 at, const std::string& utf8, const TextStyle& style);
   double TextWidth(const std::string& utf8, double size, bool bold = false) const;
   /// Pastes an 8-bit BGR picture that has been made for this box: PixelsOf(box).
@@ -77,8 +82,18 @@ class Canvas {
   void Save();
 
  private:
+  /// A piece of a text in one size.
+  struct Piece {
+    std::string text;
+    bool subscript = false;
+  };
+  static std::vector<Piece> Pieces(const std::string& utf8);
+  /// The size at which text of `size` is set.
+  double SetSize(double size) const;
+  double PieceWidth(const Piece& piece, double size, bool bold) const;
+
   std::string path_;
-  bool with_title_;
+  bool with_title_, narrow_;
   SheetSize size_;
   Fonts fonts_;
   std::unique_ptr<Sheet> sheet_;

@@ -47,6 +47,11 @@ inline double SensedManipulability(const Frame& frame, int finger) {
 /// something.
 inline bool Holds(const Frame& frame) { return HoldsAlone(frame.state, frame.stand_in); }
 
+/// Below it, `switched` maximises stability; known from the first tick on.
+inline double Threshold(const Frame& frame) {
+  return frame.tick > 0 ? frame.stability.threshold : kNoValue;
+}
+
 /// The finger that explores, -1 for none.
 inline int ExploringFinger(const Frame& frame) {
   return frame.exploration.active ? frame.exploration.finger : -1;
@@ -61,6 +66,14 @@ inline std::string StabilityLabel(std::span<const Frame> frames) {
     if (frame.stability.measure != measure) return "stability";
   const MeasureInfo& info = InfoOf(measure);
   return fmt::format("stability  {}{}{}{}", info.label, info.unit.empty() ? "" : " [", info.unit,
+                     info.unit.empty() ? "" : "]");
+}
+
+/// Its symbol alone.
+inline std::string StabilityShortLabel(std::span<const Frame> frames) {
+  if (frames.empty()) return "stability";
+  const MeasureInfo& info = InfoOf(frames.back().stability.measure);
+  return fmt::format("{}{}{}{}", info.label, info.unit.empty() ? "" : " [", info.unit,
                      info.unit.empty() ? "" : "]");
 }
 

@@ -50,7 +50,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     c.phi_sensed =
         Column(c.frames, [&](const Frame& frame) { return SensedManipulability(frame, finger); });
     c.stability = Column(c.frames, [](const Frame& frame) { return frame.stability.active; });
-    c.threshold = Column(c.frames, [](const Frame& frame) { return frame.stability.threshold; });
+    c.threshold = Column(c.frames, Threshold);
     time_range.Add(c.t);
     phi_range.Add(c.phi_true);
     phi_range.Add(c.phi_sensed);
@@ -62,30 +62,62 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
   }
   if (curves.empty()) throw std::runtime_error(path + ": nothing to draw: no runs were given");
 
-  Canvas canvas(SizeOf(options), path);
-  DrawTitle(&canvas,
-            options.title.empty()
-                ? fmt::format("Exploring the object's surface with the {} finger", fingers)
-                : options.title,
-            Facts(curves.front().frames, hand, options.object_name));
+  Canvas canvas(SizeOf(options, 640), path);
+  const double top =
+      DrawTitle(&canvas,
+                options.title.empty()
+                    ? fmt::format("Exploring the object's surface with the {} finger", fingers)
+                    : options.title,
+                Facts(curves.front().frames, hand, options)) +
+      (canvas.narrow() ? 0 : 12);
   stability_range.Add(0);
-  const double left = 150, width = canvas.width() - left - 290, top = 116;
-  const double height = (canvas.height() - 90 - top - 30) / 2;
-  const Axis time = NiceAxis(0, time_range.hi, 9, false, "time since the exploration began [s]");
-  const auto axis = [](const Range& range, const std::string& label) {
+  std::vector<LegendEntry> legend, gains;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    legend.push_back(LineEntry(runs[i].label, PenOfRun(i)));
+    const auto valid = [](double v) { return v == v; };
+    const auto& phi = curves[i].phi_true;
+    const auto begin = std::find_if(phi.begin(), phi.end(), valid);
+    const auto end = std::find_if(phi.rbegin(), phi.rend(), valid);
+    if (begin == phi.end()) continue;
+    LegendEntry gain{fmt::format("{:.2f} → {:.2f}", *begin, *end), {}, PenOfRun(i).colour, true};
+    if (canvas.narrow()) gain.text = runs[i].label + " " + gain.text;
+    gains.push_back(std::move(gain));
+  }
+  const LegendEntry sensed = LineEntry("as sensed", {Tint(kInk, 0.68), 1.5}),
+                    threshold = LineEntry("threshold", {kGrey, 2, {12, 7}});
+  std::vector<LegendGroup> legends = {{"criterion, noise-free φ", legend},
+                                      {"", {sensed}},
+                                      {"φ, start → end", gains},
+                                      {"stability, as sensed", legend}};
+  legends.back().entries.push_back(threshold);
+  if (canvas.narrow()) {  // the same pens above and below: once is enough
+    legends[0].entries.insert(legends[0].entries.end(), {sensed, threshold});
+    legends[1].entries.clear();
+    legends.pop_back();
+  }
+  const Layout layout(canvas, legends);
+  const double left = layout.left, width = layout.width;
+  const double height = (layout.bottom - top - 30) / 2;
+  const Axis time =
+      NiceAxis(0, time_range.hi, canvas.narrow() ? 5 : 9, false,
+               canvas.narrow() ? "time exploring [s]" : "time since the exploration began [s]");
+  const auto axis = [](const Range& range, const std::string& label,
+                       const std::string& short_label) {
     const Range padded = range.Padded(0.04, 0.06);
-    return NiceAxis(std::max(0.0, padded.lo), padded.hi, 6, true, label);
+    Axis result = NiceAxis(std::max(0.0, padded.lo), padded.hi, 6, true, label);
+    result.short_label = short_label;
+    return result;
   };
-  const Panel upper{
-      {left, top, width, height}, time, axis(phi_range, "manipulability  φ  [10⁻⁴ m³]")};
+  const Panel upper{{left, top, width, height},
+                    time,
+                    axis(phi_range, "manipulability  φ  [10⁻⁴ m³]", "φ  [10⁻⁴ m³]")};
   const Panel lower{{left, top + height + 30, width, height},
                     time,
-                    axis(stability_range, StabilityLabel(curves.front().frames))};
+                    axis(stability_range, StabilityLabel(curves.front().frames),
+                         StabilityShortLabel(curves.front().frames))};
   DrawGrid(&canvas, upper, false);
   DrawGrid(&canvas, lower, true);
 
-  std::vector<LegendEntry> legend;
-  std::vector<std::string> gains;
   for (std::size_t i = 0; i < curves.size(); ++i)
     DrawCurve(&canvas, upper, curves[i].t, curves[i].phi_sensed,
               {Tint(PenOfRun(i).colour, 0.68), 1.5});
@@ -97,26 +129,13 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     const Pen pen = PenOfRun(i);
     DrawCurve(&canvas, upper, curves[i].t, curves[i].phi_true, pen);
     DrawCurve(&canvas, lower, curves[i].t, curves[i].stability, pen);
-    legend.push_back(LineEntry(runs[i].label, pen));
-    const auto valid = [](double v) { return v == v; };
-    const auto& phi = curves[i].phi_true;
-    const auto begin = std::find_if(phi.begin(), phi.end(), valid);
-    const auto end = std::find_if(phi.rbegin(), phi.rend(), valid);
-    if (begin != phi.end()) gains.push_back(fmt::format("{:.2f} → {:.2f}", *begin, *end));
   }
   DrawFrame(&canvas, upper);
   DrawFrame(&canvas, lower);
 
-  const double side = left + width + 28;
-  double y = DrawLegend(&canvas, {side, top}, "criterion, noise-free φ", legend) + 8;
-  const std::array<LegendEntry, 1> sensed = {LineEntry("as sensed", {Tint(kInk, 0.68), 1.5})};
-  y = DrawLegend(&canvas, {side, y}, "", sensed) + 8;
-  y = DrawLegend(&canvas, {side, y}, "φ, start → end", {});
-  for (std::size_t i = 0; i < gains.size(); ++i, y += 25)
-    canvas.Text({side, y + 8}, gains[i], {.size = 17, .colour = PenOfRun(i).colour, .bold = true});
-  std::vector<LegendEntry> below = legend;
-  below.push_back(LineEntry("threshold", {kGrey, 2, {12, 7}}));
-  DrawLegend(&canvas, {side, lower.area.y}, "stability, as sensed", below);
+  legends[0].y = top;
+  legends.back().y = std::max(legends.back().y, canvas.narrow() ? 0 : lower.area.y);
+  layout.DrawLegends(&canvas, legends);
   canvas.Save();
 }
 

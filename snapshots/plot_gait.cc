@@ -54,8 +54,8 @@ int GaitStateOf(const Frame& frame) {
 /// The paper's name of the state in which a finger regrasps: S_T thumb, S_F first, ...
 BandLook LookOfGaitState(const HandModel& hand, int value) {
   if (value == kTurning) return {"turn", Tint(kInk, 0.9)};
-  const std::string state(GaitStateNameOf(hand, value).view());
-  return {state, Tint(LookOfFinger(value).colour, 0.42), state.substr(2, 1)};
+  const std::string state(GaitStateNameOf(hand, value).view()), which = state.substr(2);
+  return {"S_{" + which + "}", Tint(LookOfFinger(value).colour, 0.42), which};
 }
 
 /// The stability that the exploring finger maximises: in S_F that of the grasp without the thumb.
@@ -93,12 +93,27 @@ std::vector<Event> Unplanned(std::span<const Frame> frames, std::span<const Even
 }
 
 Axis AxisOver(std::initializer_list<std::span<const double>> columns, bool from_zero,
-              std::string label) {
+              std::string label, std::string short_label = "") {
   Range range;
   if (from_zero) range.Add(0);
   for (const auto& column : columns) range.Add(column);
   const Range padded = range.Padded(from_zero ? 0 : 0.04, 0.06);
-  return NiceAxis(padded.lo, padded.hi, 4, true, std::move(label));
+  Axis axis = NiceAxis(padded.lo, padded.hi, 4, true, std::move(label));
+  axis.short_label = std::move(short_label);
+  return axis;
+}
+
+std::vector<LegendEntry> Roles() {
+  const auto patch = [](const char* text, Colour colour) {
+    return LegendEntry{text, [colour](Canvas* c, Point2 m) {
+                         c->FillBox({m.x - 22, m.y - 9, 44, 18}, colour);
+                       }};
+  };
+  const auto role = [](FingerRole value) {
+    return LookOfActivity(0, static_cast<int>(value)).colour;
+  };
+  return {patch("holds", role(FingerRole::kHold)), patch("moves", role(FingerRole::kMove)),
+          patch("explores", role(FingerRole::kExplore)), patch("lost its contact", kLightGrey)};
 }
 
 }  // namespace
@@ -106,10 +121,10 @@ Axis AxisOver(std::initializer_list<std::span<const double>> columns, bool from_
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
               const PlotOptions& options, const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(SizeOf(options), path);
+  Canvas canvas(SizeOf(options, 900), path);
   const std::vector<double> t = Times(frames);
-  DrawTitle(&canvas, options.title.empty() ? "Finger gait" : options.title,
-            Facts(frames, hand, options.object_name));
+  const double strips = DrawTitle(&canvas, options.title.empty() ? "Finger gait" : options.title,
+                                  Facts(frames, hand, options));
 
   const auto angle = [&](double GaitFrame::*field) {
     return Column(frames, [field](const Frame& f) {
@@ -122,20 +137,54 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
       Column(frames, [](const Frame& f) { return TrueManipulability(f, ExploringFinger(f)); });
   const auto stability =
       Column(frames, [](const Frame& f) { return Holds(f) ? f.stability.active : kNoValue; });
-  const auto threshold = Column(frames, [](const Frame& f) { return f.stability.threshold; });
+  const auto threshold = Column(frames, Threshold);
 
   const auto objective = Column(frames, StabilityObjective);
 
   // Strips: state, gait (while there is one), every finger, events. Panels: what has values.
   const bool rotates = AnyValue(achieved) || AnyValue(target), explores = AnyValue(phi);
   const int n = hand.num_fingers();
-  const double left = 150, width = canvas.width() - left - 290, bottom = canvas.height() - 90;
-  const double strip = std::min(32.0, 190.0 / std::max(1, n)), strips = 104;
+  const auto own = [&](const std::vector<double>& values, int finger) {
+    std::vector<double> result = values;
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      if (ExploringFinger(frames[i]) != finger) result[i] = kNoValue;
+    return result;
+  };
+  const std::vector<Event> unplanned = Unplanned(frames, events);
+  const auto pen = [](int finger) {
+    return Pen{LookOfFinger(finger).colour, 3.5, LookOfFinger(finger).dash};
+  };
+  std::vector<LegendEntry> explorers, rotation;
+  std::vector<LegendEntry> holding = {LineEntry("holding fingers", {kInk, 2.5}),
+                                      LineEntry("threshold", {kGrey, 2, {12, 7}})};
+  for (int f = 0; f < n; ++f) {
+    if (explores && AnyValue(own(phi, f)))
+      explorers.push_back(LineEntry(FingerName(hand, f), pen(f)));
+    if (AnyValue(own(objective, f)))
+      holding.push_back(LineEntry(
+          rotates ? "objective in " + LookOfGaitState(hand, f).label : "objective", pen(f)));
+  }
+  if (rotates) {
+    const auto last =
+        std::find_if(frames.rbegin(), frames.rend(), [](const Frame& f) { return f.gait.active; });
+    rotation = {
+        LineEntry("achieved", {kInk, 3}),
+        LineEntry("reference", {kGrey, 2, {10, 6}}),
+        {fmt::format("{} cycles, {} regrasps", last->gait.cycles, last->gait.regrasps), {}}};
+  }
+  std::vector<LegendGroup> legends = {{"finger", Roles()},
+                                      {"events", EventLegend(frames, unplanned)},
+                                      {"object angle", rotation},
+                                      {"φ, noise-free", explorers},
+                                      {"stability, as sensed", holding}};
+  const Layout layout(canvas, legends);
+  const double left = layout.left, width = layout.width, bottom = layout.bottom;
+  const double strip = std::min(32.0, (canvas.narrow() ? 130.0 : 190.0) / std::max(1, n));
   const double fingers_top = strips + (rotates ? 78 : 40),
                panels_top = fingers_top + n * (strip + 6) + 48;
   const int panel_count = 1 + rotates + explores;
   const double each = (bottom - panels_top - 26 * (panel_count - 1)) / panel_count;
-  const Axis time = TimeAxis(frames);
+  const Axis time = TimeAxis(frames, canvas);
   std::vector<Panel> panels;
   const auto add = [&](Axis y) {
     panels.push_back(
@@ -146,8 +195,8 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   };
   const Panel upper = rotates ? add(AxisOver({target, achieved}, true, "angle [°]")) : Panel{};
   const Panel middle = explores ? add(AxisOver({phi}, true, "φ  [10⁻⁴ m³]")) : Panel{};
-  const Panel lower =
-      add(AxisOver({stability, threshold, objective}, true, StabilityLabel(frames)));
+  const Panel lower = add(AxisOver({stability, threshold, objective}, true, StabilityLabel(frames),
+                                   StabilityShortLabel(frames)));
 
   const auto states =
       Bands(frames, [](const Frame& frame) { return static_cast<int>(frame.state); });
@@ -166,69 +215,26 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
     DrawStateBackground(&canvas, panel, states);
     DrawGrid(&canvas, panel, &panel == &panels.back());
   }
-  const auto marks =
-      DrawEvents(&canvas, panels, panels_top - 22, frames, Unplanned(frames, events));
-  if (!marks.empty())
+  DrawEvents(&canvas, panels, panels_top - 22, frames, unplanned);
+  if (!legends[1].entries.empty())
     canvas.Text({left - 12, panels_top - 22}, "events",
                 {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
-  std::vector<LegendEntry> explorers;
   if (rotates) {
     DrawCurve(&canvas, upper, t, target, {kGrey, 2, {10, 6}});
     DrawCurve(&canvas, upper, t, achieved, {kInk, 3});
   }
-  for (int f = 0; explores && f < n; ++f) {
-    std::vector<double> own = phi;
-    for (std::size_t i = 0; i < frames.size(); ++i)
-      if (ExploringFinger(frames[i]) != f) own[i] = kNoValue;
-    const Pen pen{LookOfFinger(f).colour, 3.5};
-    DrawCurve(&canvas, middle, t, own, pen);
-    if (AnyValue(own)) explorers.push_back(LineEntry(FingerName(hand, f), pen));
-  }
+  for (int f = 0; explores && f < n; ++f) DrawCurve(&canvas, middle, t, own(phi, f), pen(f));
   DrawCurve(&canvas, lower, t, stability, {kInk, 2.5});
   DrawCurve(&canvas, lower, t, threshold, {kGrey, 2, {12, 7}});
-  std::vector<LegendEntry> holding = {LineEntry("holding fingers", {kInk, 2.5}),
-                                      LineEntry("threshold", {kGrey, 2, {12, 7}})};
-  for (int f = 0; f < n; ++f) {
-    std::vector<double> own = objective;
-    for (std::size_t i = 0; i < frames.size(); ++i)
-      if (ExploringFinger(frames[i]) != f) own[i] = kNoValue;
-    if (!AnyValue(own)) continue;
-    const Pen pen{LookOfFinger(f).colour, 3.5};
-    DrawCurve(&canvas, lower, t, own, pen);
-    holding.push_back(
-        LineEntry(rotates ? "objective in " + LookOfGaitState(hand, f).label : "objective", pen));
-  }
+  for (int f = 0; f < n; ++f) DrawCurve(&canvas, lower, t, own(objective, f), pen(f));
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
 
-  const double side = left + width + 28;
-  const auto patch = [](const char* text, Colour colour) {
-    return LegendEntry{text, [colour](Canvas* c, Point2 m) {
-                         c->FillBox({m.x - 22, m.y - 9, 44, 18}, colour);
-                       }};
-  };
-  const auto role = [](FingerRole value) {
-    return LookOfActivity(0, static_cast<int>(value)).colour;
-  };
-  const std::array<LegendEntry, 4> roles = {
-      patch("holds", role(FingerRole::kHold)), patch("moves", role(FingerRole::kMove)),
-      patch("explores", role(FingerRole::kExplore)), patch("lost its contact", kLightGrey)};
-  double y = DrawLegend(&canvas, {side, fingers_top}, "finger", roles) + 8;
-  if (!marks.empty()) y = DrawLegend(&canvas, {side, y}, "events", marks) + 8;
-  if (rotates) {
-    const std::array<LegendEntry, 2> rotation = {LineEntry("achieved", {kInk, 3}),
-                                                 LineEntry("reference", {kGrey, 2, {10, 6}})};
-    y = DrawLegend(&canvas, {side, std::max(y, upper.area.y)}, "object angle", rotation);
-    const auto last =
-        std::find_if(frames.rbegin(), frames.rend(), [](const Frame& f) { return f.gait.active; });
-    canvas.Text({side, y + 12},
-                fmt::format("{} cycles, {} regrasps", last->gait.cycles, last->gait.regrasps),
-                {.size = 18});
-    y += 30;
-  }
-  if (explores)
-    y = DrawLegend(&canvas, {side, std::max(y + 8, middle.area.y)}, "φ, noise-free", explorers);
-  DrawLegend(&canvas, {side, std::max(y + 8, lower.area.y)}, "stability, as sensed", holding);
+  legends[0].y = fingers_top;
+  legends[2].y = upper.area.y;
+  legends[3].y = middle.area.y;
+  legends[4].y = lower.area.y;
+  layout.DrawLegends(&canvas, legends);
   canvas.Save();
 }
 

@@ -56,19 +56,42 @@ std::string Gain(std::span<const Frame> frames, int finger) {
   return std::isfinite(last) ? fmt::format("  {:.2f} → {:.2f}", first, last) : "";
 }
 
+// Places of legends.
+constexpr std::size_t kStabilityGroup = 2, kLoadGroup = 4;
+
+std::vector<LegendGroup> Legends(std::span<const Frame> frames, std::span<const Event> events,
+                                 const HandModel& hand) {
+  std::vector<LegendEntry> fingers, kinds;
+  bool explores = false;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const FingerLook look = LookOfFinger(f);
+    const std::string gain = Gain(frames, f);
+    explores = explores || !gain.empty();
+    fingers.push_back(LineEntry(FingerName(hand, f) + gain, {look.colour, 2, look.dash}));
+  }
+  if (explores)
+    kinds = {LineEntry("while it explores", {kInk, 4}),
+             LineEntry("as sensed", {Tint(kInk, 0.62), 1.5})};
+  return {
+      {explores ? "φ, last exploration" : "finger, noise-free", fingers},
+      {"", kinds},
+      {"stability, as sensed",
+       {LineEntry("holding fingers", {kInk, 2.5}), LineEntry("threshold", {kGrey, 2, {12, 7}})}},
+      {"events", EventLegend(frames, events)},
+      {"load margin", {LineEntry("all in contact", {kInk, 2.5})}}};
+}
+
 }  // namespace
 
 void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
                  const HandModel& hand, const PlotOptions& options, const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(SizeOf(options), path);
+  Canvas canvas(SizeOf(options, 800), path);
   const std::vector<double> t = Times(frames);
-  DrawTitle(&canvas, options.title.empty() ? "Manipulability and grasp stability" : options.title,
-            Facts(frames, hand, options.object_name));
-
-  const double left = 150, width = canvas.width() - left - 290, bottom = canvas.height() - 90;
-  const double strips = 104, first = strips + 100, room = bottom - first - 2 * 26;
-  const Axis time = TimeAxis(frames);
+  const double strips = DrawTitle(
+      &canvas, options.title.empty() ? "Manipulability and grasp stability" : options.title,
+      Facts(frames, hand, options));
+  const Axis time = TimeAxis(frames, canvas);
 
   Range phi_range;
   phi_range.Add(0);
@@ -84,8 +107,7 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
   }
   const auto stability = Column(
       frames, [](const Frame& frame) { return Holds(frame) ? frame.stability.active : kNoValue; });
-  const auto threshold =
-      Column(frames, [](const Frame& frame) { return frame.stability.threshold; });
+  const auto threshold = Column(frames, Threshold);
   const auto margin = Column(frames, [](const Frame& frame) {
     return Holds(frame) ? frame.stability.load_margin : kNoValue;
   });
@@ -95,18 +117,26 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
   stability_range.Add(threshold);
   margin_range.Add(0);
   margin_range.Add(margin);
-  const auto axis = [](const Range& range, int ticks, const std::string& label) {
+  const auto axis = [](const Range& range, int ticks, const std::string& label,
+                       const std::string& short_label) {
     const Range padded = range.Padded(0, 0.06);
-    return NiceAxis(padded.lo, padded.hi, ticks, true, label);
+    Axis result = NiceAxis(padded.lo, padded.hi, ticks, true, label);
+    result.short_label = short_label;
+    return result;
   };
-  const Panel upper{
-      {left, first, width, 0.47 * room}, time, axis(phi_range, 6, "manipulability  φ  [10⁻⁴ m³]")};
+  std::vector<LegendGroup> legends = Legends(frames, events, hand);
+  const Layout layout(canvas, legends);
+  const double left = layout.left, width = layout.width;
+  const double first = strips + 100, room = layout.bottom - first - 2 * 26;
+  const Panel upper{{left, first, width, 0.47 * room},
+                    time,
+                    axis(phi_range, 6, "manipulability  φ  [10⁻⁴ m³]", "φ  [10⁻⁴ m³]")};
   const Panel middle{{left, upper.area.br().y + 26, width, 0.32 * room},
                      time,
-                     axis(stability_range, 5, StabilityLabel(frames))};
+                     axis(stability_range, 5, StabilityLabel(frames), StabilityShortLabel(frames))};
   const Panel lower{{left, middle.area.br().y + 26, width, 0.21 * room},
                     time,
-                    axis(margin_range, 3, "margin  ρ  [N]")};
+                    axis(margin_range, 3, "margin  ρ  [N]", "ρ  [N]")};
   const std::array<Panel, 3> panels = {upper, middle, lower};
 
   const auto states =
@@ -121,12 +151,10 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
     DrawStateBackground(&canvas, panel, states);
     DrawGrid(&canvas, panel, &panel == &panels.back());
   }
-  const auto marks = DrawEvents(&canvas, panels, strips + 78, frames, events);
+  DrawEvents(&canvas, panels, strips + 78, frames, events);
   canvas.Text({left - 12, strips + 78}, "events",
               {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
-  std::vector<LegendEntry> fingers;
-  bool any_explores = false;
   for (int f = 0; f < hand.num_fingers(); ++f) {
     const FingerLook look = LookOfFinger(f);
     DrawCurve(&canvas, upper, t, phi_sensed[f], {Tint(look.colour, 0.62), 1.5});
@@ -137,32 +165,17 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
     std::vector<double> bold = phi_true[f];
     for (std::size_t i = 0; i < frames.size(); ++i)
       if (ExploringFinger(frames[i]) != f) bold[i] = kNoValue;
-    DrawCurve(&canvas, upper, t, bold, {look.colour, 4});
-    any_explores =
-        any_explores || std::any_of(bold.begin(), bold.end(), [](double v) { return v == v; });
-    fingers.push_back(
-        LineEntry(FingerName(hand, f) + Gain(frames, f), {look.colour, 2, look.dash}));
+    DrawCurve(&canvas, upper, t, bold, {look.colour, 4, look.dash});
   }
   DrawCurve(&canvas, middle, t, stability, {kInk, 2.5});
   DrawCurve(&canvas, middle, t, threshold, {kGrey, 2, {12, 7}});
   DrawCurve(&canvas, lower, t, margin, {kInk, 2.5});
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
 
-  const double side = left + width + 28;
-  double y = DrawLegend(&canvas, {side, upper.area.y},
-                        any_explores ? "φ, last exploration" : "finger, noise-free", fingers) +
-             8;
-  if (any_explores) {
-    const std::array<LegendEntry, 2> kinds = {LineEntry("while it explores", {kInk, 4}),
-                                              LineEntry("as sensed", {Tint(kInk, 0.62), 1.5})};
-    y = DrawLegend(&canvas, {side, y}, "", kinds) + 8;
-  }
-  const std::array<LegendEntry, 2> holding = {LineEntry("holding fingers", {kInk, 2.5}),
-                                              LineEntry("threshold", {kGrey, 2, {12, 7}})};
-  y = DrawLegend(&canvas, {side, middle.area.y}, "stability, as sensed", holding) + 12;
-  if (!marks.empty()) y = DrawLegend(&canvas, {side, y}, "events", marks);
-  const std::array<LegendEntry, 1> load = {LineEntry("all in contact", {kInk, 2.5})};
-  DrawLegend(&canvas, {side, std::max(y + 12, lower.area.y)}, "load margin", load);
+  legends[kStabilityGroup].y = middle.area.y;
+  legends[kLoadGroup].y = lower.area.y;
+  legends[0].y = upper.area.y;
+  layout.DrawLegends(&canvas, legends);
   canvas.Save();
 }
 

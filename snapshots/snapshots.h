@@ -24,12 +24,17 @@
 namespace regrasp {
 
 struct PlotOptions {
-  double last_s = 0;    ///< only the newest seconds of the history; 0 = all [s]
-  int width = 1600;     ///< [px]
-  int height = 1000;    ///< [px]
-  double width_mm = 0;  ///< as printed, from 165 mm on with text of at least 7 pt; 0: for a screen
-  std::string title;    ///< empty: a title that says what the picture shows
+  double last_s = 0;  ///< only the newest seconds of the history; 0 = all [s]
+  int width = 1600;   ///< [px]
+  int height = 1000;  ///< [px]
+  /// As printed, 0: for a screen. Pictures over time have text of at least `font_pt` at any width,
+  /// in a narrow one with their legends below; the others from 165 mm on.
+  double width_mm = 0;
+  double font_pt = 7;  ///< smallest text on paper
+  double dpi = 0;      ///< of a raster picture with a printed width; 0: `width` pixels
+  std::string title;   ///< empty: a title that says what the picture shows
   bool with_title = true;
+  std::string changed;  ///< for the caption: the parameters that differ from their defaults
   std::string
       object_name;  ///< for the caption; empty: left out (PlotContacts and PlotScene know it)
 };

@@ -48,6 +48,10 @@ std::optional<EventLook> LookOfEvent(const Event& event) {
   }
 }
 
+bool Within(std::span<const Frame> frames, const Event& event) {
+  return event.tick >= frames.front().tick && event.tick <= frames.back().tick;
+}
+
 }  // namespace
 
 std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
@@ -75,10 +79,17 @@ std::string Facts(std::span<const Frame> frames, const HandModel& hand, const st
          fmt::format(" · simulated time {:.2f} to {:.2f} s", frames.front().time_s, last.time_s);
 }
 
-Axis TimeAxis(std::span<const Frame> frames) {
+std::string Facts(std::span<const Frame> frames, const HandModel& hand,
+                  const PlotOptions& options) {
+  std::string text = Facts(frames, hand, options.object_name);
+  if (!options.changed.empty()) text += " · changed: " + options.changed;
+  return text;
+}
+
+Axis TimeAxis(std::span<const Frame> frames, const Canvas& canvas) {
   double lo = frames.front().time_s;
   if (lo - std::floor(lo) < 0.1) lo = std::floor(lo);
-  return NiceAxis(lo, frames.back().time_s, 9, false, "simulated time [s]");
+  return NiceAxis(lo, frames.back().time_s, canvas.narrow() ? 5 : 9, false, "simulated time [s]");
 }
 
 std::string FingerName(const HandModel& hand, int finger) {
@@ -133,16 +144,15 @@ void DrawStateBackground(Canvas* canvas, const Panel& panel, std::span<const Ban
   canvas->Unclip();
 }
 
-std::vector<LegendEntry> DrawEvents(Canvas* canvas, std::span<const Panel> panels, double y,
-                                    std::span<const Frame> frames, std::span<const Event> events) {
-  std::map<EventKind, LegendEntry> legend;
-  const Frame &first = frames.front(), &last = frames.back();
+void DrawEvents(Canvas* canvas, std::span<const Panel> panels, double y,
+                std::span<const Frame> frames, std::span<const Event> events) {
+  const Frame& last = frames.back();
   const double dt = last.tick > 0 ? last.time_s / static_cast<double>(last.tick) : 1e-3;
   const Panel& top = panels.front();
   double previous_x = -1e9;
   for (const Event& event : events) {
     const auto look = LookOfEvent(event);
-    if (!look || event.tick < first.tick || event.tick > last.tick) continue;
+    if (!look || !Within(frames, event)) continue;
     // What happens to one finger has its colour.
     const Colour colour = event.finger >= 0 ? LookOfFinger(event.finger).colour : kInk;
     const double x = top.At(static_cast<double>(event.tick) * dt, 0).x;
@@ -151,8 +161,14 @@ std::vector<LegendEntry> DrawEvents(Canvas* canvas, std::span<const Panel> panel
         canvas->Line({x, panel.area.y}, {x, panel.area.br().y}, {Tint(colour, 0.45), 1, {3, 5}});
     previous_x = x;
     canvas->Mark(look->marker, {x, y}, 5.5, colour);
-    legend.try_emplace(event.kind, MarkEntry(look->text, look->marker, kInk));
   }
+}
+
+std::vector<LegendEntry> EventLegend(std::span<const Frame> frames, std::span<const Event> events) {
+  std::map<EventKind, LegendEntry> legend;
+  for (const Event& event : events)
+    if (const auto look = LookOfEvent(event); look && Within(frames, event))
+      legend.try_emplace(event.kind, MarkEntry(look->text, look->marker, kInk));
   std::vector<LegendEntry> entries;
   for (auto& [kind, entry] : legend) entries.push_back(std::move(entry));
   return entries;

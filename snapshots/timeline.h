@@ -20,8 +20,11 @@ namespace regrasp {
 std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
                               const std::string& path);
 
+/// The same with what `options` know.
+std::string Facts(std::span<const Frame> frames, const HandModel& hand, const PlotOptions& options);
+
 /// The time axis of these frames; a start within 0.1 s of a whole second is moved there.
-Axis TimeAxis(std::span<const Frame> frames);
+Axis TimeAxis(std::span<const Frame> frames, const Canvas& canvas);
 
 /// "seed 1 · noise paper · object sphere · hand shadow · 12.00–40.02 s": what a reader needs to
 /// repeat it.
@@ -51,8 +54,10 @@ void DrawStrip(Canvas* canvas, const Panel& panel, double y, double height, cons
 void DrawStateBackground(Canvas* canvas, const Panel& panel, std::span<const Band> states);
 
 /// Marks the events that explain a curve (contacts, pushes, faults, parameters, ...) in a row at y,
-/// with a thin line through each panel. Returns the legend of the kinds that occur.
-std::vector<LegendEntry> DrawEvents(Canvas* canvas, std::span<const Panel> panels, double y,
-                                    std::span<const Frame> frames, std::span<const Event> events);
+/// with a thin line through each panel.
+void DrawEvents(Canvas* canvas, std::span<const Panel> panels, double y,
+                std::span<const Frame> frames, std::span<const Event> events);
+/// The legend of the kinds that occur.
+std::vector<LegendEntry> EventLegend(std::span<const Frame> frames, std::span<const Event> events);
 
 }  // namespace regrasp
