@@ -7,6 +7,7 @@
 #include "cli/client/context.h"
 #include "cli/commands/jobs.h"
 #include "cli/commands/parameters.h"
+#include "cli/grammar/units.h"
 
 namespace regrasp::cli {
 namespace {
@@ -121,9 +122,14 @@ ExitCode NoiseOff(Context& context, const Invocation&) {
 ExitCode NoiseSet(Context& context, const Invocation& invocation) {
   Json params = invocation.params;
   if (invocation.Has("pose")) {
-    const auto pose = ParseNumbers(invocation.Text("pose"), 2, "--pose");
-    params["object_position_m"] = pose[0] * 1e-3;
-    params["object_rotation_rad"] = pose[1] / kDegrees;
+    const std::string pose = invocation.Text("pose");
+    const auto comma = pose.find(',');
+    if (comma == std::string::npos)
+      throw CliError(kUsage, fmt::format("--pose '{}' is not MM,DEG", pose),
+                     "regrasp noise set --pose 1,2");
+    params["object_position_m"] = ParseQuantity(pose.substr(0, comma), "--pose", "mm") * 1e-3;
+    params["object_rotation_rad"] =
+        ParseQuantity(pose.substr(comma + 1), "--pose", "deg") / kDegrees;
   }
   if (params.empty())
     throw CliError(kUsage, "noise set: no level given",

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "cli/client/context.h"
+#include "cli/grammar/units.h"
 #include "core/files/draft.h"
 
 namespace regrasp::cli {
@@ -95,8 +96,22 @@ ExitCode List(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
+/// "0.5N" as a number of the parameter's own unit.
+Invocation InOwnUnit(Context& context, const Invocation& invocation) {
+  const auto given = invocation.params.find("value");
+  if (given == invocation.params.end() || !given->is_string()) return invocation;
+  const std::string text = given->get<std::string>();
+  if (!HasUnit(text)) return invocation;
+  const Json parameter =
+      context.client().Call("param.get", {{"name", At(invocation.params, "name")}});
+  Invocation converted = invocation;
+  converted.params["value"] =
+      ParseQuantity(text, Plain(At(parameter, "name")), Plain(At(parameter, "unit")));
+  return converted;
+}
+
 ExitCode GetOrSet(Context& context, const Invocation& invocation) {
-  const Json answer = context.Call(invocation);
+  const Json answer = context.Call(InOwnUnit(context, invocation));
   context.Print(answer, [&] { PrintParameter(context.out(), answer); });
   return kOk;
 }

@@ -10,6 +10,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/grammar/grammar.h"
+#include "cli/grammar/units.h"
 
 namespace regrasp::cli {
 namespace {
@@ -43,9 +44,9 @@ Case ParseCase(const std::string& text) {
     if (key == "object")
       c.setting.object = ModelName(value);
     else if (key == "tilt")
-      c.setting.tilt_deg = ParseNumber(value, "--case tilt");
+      c.setting.tilt_deg = ParseQuantity(value, "--case tilt", "deg");
     else if (key == "push")
-      c.setting.push_n = ParseNumber(value, "--case push");
+      c.setting.push_n = ParseQuantity(value, "--case push", "N");
     else if (key == "turns")
       c.setting.turns = ParseNumber(value, "--case turns");
     else if (key == "criterion")

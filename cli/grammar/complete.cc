@@ -26,6 +26,20 @@ const Arg* FindFlag(std::span<const Arg> args, const std::string& word) {
   return nullptr;
 }
 
+/// Names that another method knows: the entries of a list, or the values of a parameter.
+struct KnownElsewhere {
+  std::string_view words, key, method, field;
+};
+constexpr KnownElsewhere kKnownElsewhere[] = {
+    {"checkpoint restore", "name", "checkpoint.list", "name"},
+    {"job show", "id", "job.list", "id"},
+    {"job wait", "id", "job.list", "id"},
+    {"job cancel", "id", "job.list", "id"},
+    {"replay", "run", "record.list", "file"},
+    {"export", "run", "record.list", "file"},
+    {"video", "run", "record.list", "file"},
+    {"experiment exploration", "finger", "explore", "finger"}};
+
 /// The words read from left to right: how far the command goes, and what is still to come.
 struct Reader {
   std::string path;                      ///< "noise set"
@@ -87,6 +101,13 @@ struct Collector {
     if (arg.metavar.find("FILE") != std::string::npos || arg.metavar == "DIR" ||
         arg.metavar == "PATH")
       candidates.files = true;
+    for (const KnownElsewhere& known : kKnownElsewhere)
+      if (command && command->words == known.words && arg.key == known.key) {
+        for (const std::string& name : ask(std::string(known.method), std::string(known.field)))
+          Add(name, arg.help);
+        candidates.files = candidates.files || arg.key == "run";
+        return;
+      }
     const MethodSpec* method = command ? command->method : nullptr;
     if (method && arg.wire && arg.kind == ArgKind::kText)
       for (const std::string& name : ask(std::string(method->name), arg.key)) Add(name, arg.help);
@@ -133,6 +154,11 @@ AskNames AskDaemon(const std::string& socket, double patience_s) {
     };
     try {
       Client client(ClientSocket(socket), left());
+      if (method.ends_with(".list")) {
+        const Json list = client.Call(method, Json::object(), left());
+        for (const Json& row : *list.begin()) names.push_back(Plain(At(row, param.c_str())));
+        return names;
+      }
       const Json answer = client.Call("describe", {{"method", method}}, left());
       for (const auto& spec : At(answer["methods"][0], "params"))
         if (At(spec, "name") == param)

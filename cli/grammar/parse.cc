@@ -8,6 +8,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/grammar/grammar.h"
+#include "cli/grammar/units.h"
 #include "core/common/nearest_name.h"
 
 // CLI11 splits the words; checking them is ours, because it accepts nan inside a range and says
@@ -95,7 +96,7 @@ Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
       return static_cast<std::int64_t>(typed);
     }
     case ArgKind::kNumber: {
-      const double typed = ParseNumber(text, name);
+      const double typed = ParseQuantity(text, name, UnitOfKey(arg.key));
       CheckRange(arg, typed);
       return typed * arg.scale;
     }
@@ -103,7 +104,7 @@ Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
       return ParseParameterValue(text);
     case ArgKind::kVector3: {
       Json vector = Json::array();
-      for (const double typed : ParseNumbers(text, 3, name)) {
+      for (const double typed : ParseQuantities(text, 3, name, UnitOfKey(arg.key))) {
         CheckRange(arg, typed);
         vector.push_back(typed * arg.scale);
       }
@@ -133,6 +134,9 @@ std::vector<std::string_view> FlagNames(const Node* node) {
 CliError Unexpected(const std::string& word, const std::string& scope, const Node* node) {
   if (word.size() > 1 && word[0] == '-') {
     const std::string name = word.substr(0, word.find('='));
+    if (name == "--wait" && node != nullptr && node->command != nullptr)
+      return {kUsage, fmt::format("'{}' has nothing to wait for: it starts no job", scope),
+              "regrasp " + scope};
     const auto nearest = NearestName(name, FlagNames(node));
     return {
         kUsage,
@@ -309,10 +313,14 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
         options->json = json > 0;
         return shell;
       }
-      throw CliError(
-          kUsage,
-          scope.empty() ? "no command given" : fmt::format("'{}' needs a further word", scope),
-          HelpHint(scope));
+      if (scope.empty()) throw CliError(kUsage, "no command given", HelpHint(scope));
+      std::vector<std::string> next;
+      for (const CommandSpec* command : FindCommands(scope))
+        if (command->words != scope) next.push_back(command->words.substr(scope.size() + 1));
+      throw CliError(kUsage,
+                     fmt::format("'{}' needs a further word{}{}", scope, next.empty() ? "" : ": ",
+                                 fmt::join(next, ", ")),
+                     HelpHint(scope));
     }
     std::string cause = error.what();
     throw CliError(kUsage, cause.substr(0, cause.find('\n')), HelpHint(scope));

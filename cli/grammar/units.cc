@@ -26,7 +26,8 @@ constexpr Unit kUnits[] = {
     {"rad/s", 'w', 1},     {"mm/s", 'v', 1e-3}, {"m/s", 'v', 1},
     {"kg", 'g', 1},        {"g", 'g', 1e-3},    {"m/s2", 'b', 1},
     {"N m", 'q', 1},       {"Nm", 'q', 1},      {"1/m", 'i', 1},
-    {"1/mm", 'i', 1e3},    {"N/m", 'k', 1},     {"N/mm", 'k', 1e3}};
+    {"1/mm", 'i', 1e3},    {"pt", 'p', 1},      {"N/m", 'k', 1},
+    {"N/mm", 'k', 1e3}};
 
 /// As grammar.cc has them; longer ends first.
 constexpr std::pair<std::string_view, std::string_view> kKeyEnds[] = {

@@ -145,7 +145,8 @@ class Answers(FakeCase):
     def test_everyday_units_become_si(self):
         noise = {"preset": "custom", "position_m": 0.001}
         fake = self.fake(noise__set=lambda _: noise, push=lambda p: {**p, "duration_s": 0.1}, param__set=lambda p: {**p, "unit": "", "min": 0, "max": 1},
-                         explore=lambda _: {"job": 7}, plot=lambda p: {"file": "quality.png", "path": "/x/quality.png"})
+                         explore=lambda _: {"job": 7}, plot=lambda p: {"file": "quality.png", "path": "/x/quality.png"},
+                         param__get=lambda p: {**p, "value": 1, "unit": "N", "min": 0, "max": 5})
         self.expect(0, "noise", "set", "--position", "2", "--normal", "90", "--pose", "1,90")
         method, params = fake.requests.pop()
         self.assertEqual(method, "noise.set")
@@ -160,6 +161,18 @@ class Answers(FakeCase):
         self.assertEqual(fake.requests.pop(), ("explore", {"finger": "ring", "criterion": "switched", "seed": 9007199254740992, "max_cycles": 12}))
         self.assertEqual(self.expect(0, "plot", "quality", "--last", "3").stdout, "/x/quality.png\n")
         self.assertEqual(fake.requests.pop(), ("plot", {"name": "quality", "last_s": 3}))
+        # Units, also mixed; the other side gets SI.
+        self.expect(0, "push", "--force", "500mN,0.25N,-1", "--duration", "50ms")
+        self.assertEqual(fake.requests.pop(), ("push", {"force_n": [0.5, 0.25, -1], "duration_s": 0.05}))
+        self.expect(0, "noise", "set", "--position", "0.05cm", "--normal", "0.1rad", "--pose", "1000um,0.1rad")
+        method, params = fake.requests.pop()
+        self.assertEqual(method, "noise.set")
+        for name, value in {"position_m": 5e-4, "normal_rad": 0.1, "object_position_m": 1e-3, "object_rotation_rad": 0.1}.items():
+            self.assertAlmostEqual(params[name], value, 12)
+        self.expect(0, "param", "set", "control.grip_force", "1500mN")
+        self.assertEqual(fake.requests[-2:], [("param.get", {"name": "control.grip_force"}), ("param.set", {"name": "control.grip_force", "value": 1.5})])
+        self.assertIn("'1.5deg' has the unit 'deg'; allowed are N, mN (without one it is N)", self.refused(2, "param", "set", "control.grip_force", "1.5deg")[0])
+        self.assertIn("allowed are mm, cm, m, um (without one it is mm)", self.refused(2, "noise", "set", "--position", "1deg")[0])
 
     def test_status_for_people_json_and_csv(self):
         self.fake(status=lambda _: STATUS)

@@ -39,10 +39,16 @@ class Words(Case):
             with self.subTest(words):
                 done = self.expect(2, *words)
                 self.assertEqual(done.stdout, "")
+        asked = self.refused(2, "noise")[0]
+        self.assertIn("'noise' needs a further word: ", asked)
+        for word in ("show", "set", "preset", "off"):
+            self.assertIn(word, asked)
+        self.assertIn("'stop' has nothing to wait for", self.refused(2, "stop", "--wait")[0])
 
     def test_numbers_must_be_finite_and_in_range(self):
         for words in [["noise", "set", "--position", "nan"], ["noise", "set", "--position", "inf"], ["noise", "set", "--position", "1e9"],
-                      ["noise", "set", "--position", "-1"], ["noise", "set", "--position", "1mm"], ["push", "--force", "1,2"], ["push", "--force", "1,nan,2"],
+                      ["noise", "set", "--position", "-1"], ["noise", "set", "--position", "1deg"], ["noise", "set", "--position", "1 furlong"],
+                      ["push", "--force", "1s,2,3"], ["push", "--force", "1,2"], ["push", "--force", "1,nan,2"],
                       ["explore", "ring", "--seed", "1.5"], ["--timeout", "nan", "status"], ["--timeout", "0", "status"], ["step", "0"], ["noise", "set", "--pose", "1"],
                       ["watch", "status", "--rate", "0"], ["watch", "status", "--count", "0"]]:
             with self.subTest(words):

@@ -67,6 +67,20 @@ class Names(DaemonCase):
                 self.assertEqual(offered, [wanted])
 
 
+    def test_the_daemon_knows_checkpoints_jobs_and_run_files(self):
+        self.expect(0, "record", "start", "turn.mcap")
+        self.expect(0, "grasp", "--wait")
+        self.expect(0, "checkpoint", "save", "held")
+        self.expect(0, "record", "stop")
+        deadline = time.monotonic() + HANG_S
+        for words, wanted in [(["checkpoint", "restore", ""], "held"), (["job", "wait", ""], "1"), (["job", "show", ""], "1"),
+                              (["replay", "t"], "turn.mcap"), (["export", ""], "turn.mcap"), (["video", ""], "turn.mcap"),
+                              (["experiment", "exploration", "--finger", "ri"], "ring")]:
+            with self.subTest(words):
+                while wanted not in (offered := self.offered(*words, REGRASP_SOCKET=str(self.socket))):
+                    self.assertLess(time.monotonic(), deadline, offered)
+
+
 class Patience(Case):
     def test_a_silent_daemon_is_not_waited_for(self):
         # It never answers: without a limit this would last as long as the test may.
