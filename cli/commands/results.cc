@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "cli/client/context.h"
+#include "cli/client/program.h"
 #include "cli/commands/run_files.h"
+#include "cli/grammar/units.h"
 #include "cli/print/terminal_graphics.h"
 #include "core/files/draft.h"
 #include "core/files/read_file.h"
@@ -40,7 +43,36 @@ std::string Bytes(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-ExitCode Plot(Context& context, const Invocation& invocation) {
+/// Of run files: no daemon is asked.
+ExitCode PlotRuns(Context& context, const Invocation& invocation) {
+  const std::string name = Plain(invocation.params["name"]);
+  std::vector<std::string> words = {FindHelper("regrasp-film"), "plot", "--name", name};
+  std::istringstream runs(invocation.Text("run"));
+  for (std::string run; std::getline(runs, run);) words.push_back(FindRun(context, run));
+  const auto number = [&](const char* key, const char* flag, double scale) {
+    if (!invocation.params.contains(key)) return;
+    words.insert(words.end(),
+                 {flag, fmt::format("{}", invocation.params[key].get<double>() * scale)});
+  };
+  number("last_s", "--last", 1);
+  number("size_m", "--size", 1e3);
+  number("font_size_pt", "--font-size", 1);
+  number("dpi", "--dpi", 1);
+  if (invocation.params.value("title", true) == false)
+    words.insert(words.end(), {"--no-title", ""});
+  const std::string out = invocation.Text("output", name + ".png");
+  words.insert(words.end(), {"--output", out});
+  if (context.out().format() == Format::kJson) words.push_back("--json");
+  if (context.options().quiet) words.push_back("--quiet");
+  const ExitCode code = static_cast<ExitCode>(WaitForEnd(Start(words)));
+  if (code == kOk && invocation.Has("show")) context.out().Add(DrawPicture(context, out));
+  return code;
+}
+
+ExitCode Plot(Context& context, const Invocation& typed) {
+  Invocation invocation = typed;
+  if (typed.Has("font-size"))
+    invocation.params["font_size_pt"] = ParseQuantity(typed.Text("font-size"), "--font-size", "pt");
   if (invocation.Has("show") && !context.out().human()) {
     throw CliError(kUsage, "--show draws for people: it goes with neither --json nor --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " --show");
@@ -50,6 +82,11 @@ ExitCode Plot(Context& context, const Invocation& invocation) {
     throw CliError(kUsage,
                    "-o - writes the picture itself: it goes with none of --show, --json, --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " -o - > FILE.png");
+  if (invocation.Has("run")) {
+    if (to_stdout)
+      throw CliError(kUsage, "-o - is for pictures of the daemon", "regrasp plot NAME RUN -o FILE");
+    return PlotRuns(context, invocation);
+  }
   Invocation request = invocation;
   if (const std::string suffix = fs::path(invocation.Text("output")).extension(); !suffix.empty()) {
     request.params["file"] = Plain(invocation.params["name"]) + suffix;
@@ -82,8 +119,19 @@ std::vector<CommandSpec> ResultCommands() {
   std::vector<CommandSpec> commands = {MethodCommand(
       "plot", "Results", Plot,
       {.positional = {"name"},
-       .hidden = {"file"},
+       .hidden = {"file", "font_size_pt"},
        .extra = {
+           {.key = "run",
+            .flags = "",
+            .metavar = "RUN",
+            .help = "a run file instead of what the daemon remembers: its last job; for comparison "
+                    "several",
+            .repeated = true},
+           {.key = "font-size",
+            .flags = "--font-size",
+            .metavar = "PT",
+            .help = "with --size: no text on paper is smaller",
+            .default_text = "7"},
            {.key = "output",
             .flags = "-o,--output",
             .metavar = "FILE",

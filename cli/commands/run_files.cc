@@ -56,22 +56,6 @@ ExitCode RecordList(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
-/// The run file: a path, or the name of one in the output directory of the daemon that answers.
-std::string FindRun(Context& context, const std::string& name) {
-  if (fs::exists(name) || name.find('/') != std::string::npos) return name;
-  fs::path directory;
-  try {
-    directory = Plain(At(context.client().Call("status", Json::object()), "output_dir"));
-  } catch (const CliError&) {
-    throw CliError(kNotFound, fmt::format("no file {}, and no daemon to ask for it", name),
-                   "give the path of a run file");
-  }
-  for (const fs::path& path : {directory / name, directory / (name + ".mcap")})
-    if (fs::exists(path)) return path;
-  throw CliError(kNotFound, fmt::format("no file {} here or in {}", name, directory.string()),
-                 "regrasp record list");
-}
-
 ExitCode Run(Context& context, const Invocation& invocation,
              const std::vector<std::string>& defaults = {}) {
   const std::string file = FindRun(context, invocation.Text("run"));
@@ -155,6 +139,21 @@ Arg RunArg() {
 }
 
 }  // namespace
+
+std::string FindRun(Context& context, const std::string& name) {
+  if (fs::exists(name) || name.find('/') != std::string::npos) return name;
+  fs::path directory;
+  try {
+    directory = Plain(At(context.client().Call("status", Json::object()), "output_dir"));
+  } catch (const CliError&) {
+    throw CliError(kNotFound, fmt::format("no file {}, and no daemon to ask for it", name),
+                   "give the path of a run file");
+  }
+  for (const fs::path& path : {directory / name, directory / (name + ".mcap")})
+    if (fs::exists(path)) return path;
+  throw CliError(kNotFound, fmt::format("no file {} here or in {}", name, directory.string()),
+                 "regrasp record list");
+}
 
 std::vector<CommandSpec> RunFileCommands() {
   Arg format = TextArg("format", "--format", "NAME", "csv: a directory with a file per topic");

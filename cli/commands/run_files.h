@@ -12,4 +12,8 @@ namespace regrasp::cli {
 std::vector<CommandSpec> CheckpointCommands();
 std::vector<CommandSpec> RunFileCommands();
 
+/// The run file: a path, or the name of one in the output directory of the daemon that answers.
+/// Throws CliError(kNotFound).
+std::string FindRun(Context& context, const std::string& name);
+
 }  // namespace regrasp::cli

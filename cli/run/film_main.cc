@@ -1,5 +1,5 @@
-// regrasp-film: films of run files. A program of its own, because it links OpenCV, which takes a
-// tenth of a second to start.
+// regrasp-film: films and pictures of run files. A program of its own, because it links OpenCV,
+// which takes a tenth of a second to start.
 
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 
+#include "cli/run/plot_run.h"
 #include "cli/run/program.h"
 #include "cli/run/video.h"
 
@@ -77,6 +78,21 @@ ExitCode VideoCommand(const Command& command) {
   return window.file().lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
+ExitCode PlotCommand(const Command& command) {
+  PlotOptions options;
+  options.last_s = command.Number("--last", 0);
+  options.width_mm = command.Number("--size", 0);
+  options.font_pt = command.Number("--font-size", options.font_pt);
+  options.dpi = command.Number("--dpi", 0);
+  options.with_title = !command.Has("--no-title");
+  const std::string& out = command.options.at("--output");
+  for (const std::string& note :
+       PlotRuns(command.files, command.options.at("--name"), options, out))
+    Note(note);
+  Print(command, {{"path", out}}, out);
+  return ExitCode::kOk;
+}
+
 }  // namespace
 }  // namespace regrasp::run
 
@@ -85,5 +101,5 @@ int main(int argc, char** argv) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // when regrasp is killed, so is this
   for (const int number : {SIGINT, SIGTERM, SIGHUP})
     std::signal(number, [](int seen) { signal_seen = seen; });
-  return RunVerb(argc, argv, {{"video", VideoCommand}});
+  return RunVerb(argc, argv, {{"plot", PlotCommand}, {"video", VideoCommand}});
 }

@@ -83,9 +83,12 @@ int RunVerb(int argc, char** argv,
       command.options[argument] = "";
     else if (argument.starts_with("--") && i + 1 < argc)
       command.options[argument] = argv[++i];
+    else if (command.verb.empty())
+      command.verb = argument;
     else
-      (command.verb.empty() ? command.verb : command.file) = argument;
+      command.files.push_back(argument);
   }
+  if (!command.files.empty()) command.file = command.files.front();
   try {
     const auto verb = verbs.find(command.verb);
     if (verb != verbs.end()) return static_cast<int>(verb->second(command));

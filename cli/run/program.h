@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/run/run_file.h"
 #include "cli/run/run_window.h"
@@ -17,7 +18,8 @@ namespace regrasp::run {
 using Json = nlohmann::ordered_json;
 
 struct Command {
-  std::string verb, file;
+  std::string verb, file;  ///< the first of `files`
+  std::vector<std::string> files;
   std::map<std::string, std::string> options;  ///< "--speed" -> "1.0"; flags -> ""
   bool json() const { return options.contains("--json"); }
   bool Has(const char* name) const { return options.contains(name); }

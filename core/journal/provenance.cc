@@ -35,6 +35,18 @@ void CompareModels(const LoadedScenario& recorded,
 
 }  // namespace
 
+std::string ChangedText(const Parameters& parameters, const LoadedScenario& model) {
+  const Parameters defaults = DefaultParameters(model);
+  std::string text;
+  for (const ParameterInfo& info : ParameterTable()) {
+    const Vector3d value = info.get(parameters), usual = info.get(defaults);
+    if (value == usual) continue;
+    text += (text.empty() ? "" : ", ") + std::string(info.name) + " " + ParameterText(info, value) +
+            " (" + ParameterText(info, usual) + ")";
+  }
+  return text;
+}
+
 std::vector<std::string> Differences(const SessionConfig& config, std::string_view build,
                                      const std::vector<std::filesystem::path>& search_path) {
   std::vector<std::string> differences = BuildAndParameterDifferences(config, build);

@@ -21,4 +21,8 @@ std::vector<std::string> Differences(const SessionConfig& config, std::string_vi
 std::vector<std::string> BuildAndParameterDifferences(const SessionConfig& config,
                                                       std::string_view build);
 
+/// The parameters that differ from the model's defaults, with the default: "gait.speed 0.3 (0.2)",
+/// separated by commas; empty: none does.
+std::string ChangedText(const Parameters& parameters, const LoadedScenario& model);
+
 }  // namespace regrasp

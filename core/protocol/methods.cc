@@ -307,7 +307,9 @@ constexpr std::array kPlot = {
               .default_text = "everything kept"},
     ParamSpec{.name = "size_m",
               .type = kNumber,
-              .sentence = "printed width; from 165 mm on text is at least 7 pt high on paper",
+              .sentence =
+                  "printed width; quality, gait and comparison have text of at least 7 pt at any "
+                  "width, the others from 165 mm on",
               .unit = "m",
               .min = 0.05,
               .max = 1,
@@ -316,7 +318,19 @@ constexpr std::array kPlot = {
               .type = kBool,
               .sentence = "whether the picture has its title and its line of facts",
               .default_text = "true"},
-};
+    ParamSpec{.name = "font_size_pt",
+              .type = kNumber,
+              .sentence = "with size: no text on paper is smaller",
+              .unit = "pt",
+              .min = 4,
+              .max = 24,
+              .default_text = "7"},
+    ParamSpec{.name = "dpi",
+              .type = kNumber,
+              .sentence = "with size: pixels per inch of a .png or .jpg",
+              .min = 50,
+              .max = 1200,
+              .default_text = "1600 pixels wide"}};
 constexpr std::array kPush = {
     ParamSpec{.name = "force_n",
               .type = kVector3,

@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "core/journal/provenance.h"
 #include "daemon/output/files.h"
 #include "daemon/output/output_file.h"
 #include "daemon/requests/handlers.h"
@@ -127,6 +128,9 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->options.last_s = params.Number("last_s", 0);
   job->options.width_mm = 1e3 * params.Number("size_m", 0);
   job->options.with_title = params.Bool("title", true);
+  job->options.font_pt = params.Number("font_size_pt", job->options.font_pt);
+  job->options.dpi = params.Number("dpi", 0);
+  job->options.changed = ChangedText(service.accepted.parameters, service.journal().config.model);
   job->options.object_name = service.accepted.object->name;
   job->frames = service.history().Frames(job->options.last_s);
   if (job->name == "scene") {

@@ -1,0 +1,20 @@
+#pragma once
+
+/// Pictures of run files, made by executing them again.
+
+#include <string>
+#include <vector>
+
+#include "snapshots/snapshots.h"
+
+namespace regrasp::run {
+
+/// Draws `name` (quality, contacts, gait, scene, comparison) of the last segment into `out`, which
+/// is replaced: its last job, or the newest `options.last_s` seconds where that is more than 0. A
+/// comparison shows the last exploration of each file, of one file its last two. Throws
+/// std::runtime_error: a picture that a run file does not have, no job or exploration, a replay
+/// that differs from its recording, what the pictures throw. Returns notes, see RunWindow.
+std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const std::string& name,
+                                  PlotOptions options, const std::string& out);
+
+}  // namespace regrasp::run
