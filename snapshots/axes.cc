@@ -6,6 +6,12 @@
 #include <cmath>
 
 namespace regrasp {
+namespace {
+
+constexpr double kTickSize = 19;     // of the text
+constexpr double kLineHeight = 1.1;  // of its size
+
+}  // namespace
 
 std::vector<double> Axis::Ticks() const {
   std::vector<double> ticks;
@@ -61,13 +67,17 @@ void DrawGrid(Canvas* canvas, const Panel& panel, bool x_values) {
     if (!x_values) continue;
     canvas->Line({x, below}, {x, below + 6}, {kInk, 1.5});
     canvas->Text({x, below + 12}, panel.x.TickText(v),
-                 {.size = 19, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
+                 {.size = kTickSize, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
   }
+  const double spacing = a.height * panel.y.step / (panel.y.hi - panel.y.lo);
+  const long every = std::lround(std::ceil(kLineHeight * canvas->SetSize(kTickSize) / spacing));
   for (double v : panel.y.Ticks()) {
     const double y = panel.At(0, v).y;
     canvas->Line({a.x, y}, {a.x + a.width, y}, line);
     canvas->Line({a.x - 6, y}, {a.x, y}, {kInk, 1.5});
-    canvas->Text({a.x - 12, y}, panel.y.TickText(v), {.size = 19, .align_x = AlignX::kRight});
+    if (std::lround(v / panel.y.step) % every == 0)  // where there is no room for all
+      canvas->Text({a.x - 12, y}, panel.y.TickText(v),
+                   {.size = kTickSize, .align_x = AlignX::kRight});
   }
   if (x_values)
     canvas->Text({a.x + a.width / 2, below + (canvas->narrow() ? 34 : 44)}, panel.x.label,

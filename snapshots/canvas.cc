@@ -206,6 +206,10 @@ void Canvas::Mark(Marker marker, Point2 centre, double radius, Colour colour, Co
       Disc(centre, radius, inside);
       Circle(centre, radius, rim);
       break;
+    case Marker::kRing:
+      Disc(centre, radius, kWhite);
+      Circle(centre, radius, {colour, std::max(1.2, radius * 0.45)});
+      break;
     case Marker::kSquare:
       shape(ring(4, 45, 1.25));
       break;

@@ -76,6 +76,9 @@ class Canvas {
   /// Pixels of the drawing surface per logical unit.
   double scale() const { return size_.unit * kOversampling; }
 
+  /// The size at which text of `size` is set: less on a narrow sheet.
+  double SetSize(double size) const;
+
   /// The finished file, byte by byte. Only once, as Save().
   std::string Bytes() { return sheet_->Bytes(); }
   /// Writes the picture. Throws std::runtime_error naming path and cause. Only once.
@@ -88,8 +91,6 @@ class Canvas {
     bool subscript = false;
   };
   static std::vector<Piece> Pieces(const std::string& utf8);
-  /// The size at which text of `size` is set.
-  double SetSize(double size) const;
   double PieceWidth(const Piece& piece, double size, bool bold) const;
 
   std::string path_;

@@ -39,7 +39,17 @@ inline Colour Shade(Colour colour, double amount) {
   return {mix(colour.r), mix(colour.g), mix(colour.b)};
 }
 
-enum class Marker : std::uint8_t { kDisc, kSquare, kUp, kDiamond, kDown, kCross, kPlus, kStar };
+enum class Marker : std::uint8_t {
+  kDisc,
+  kSquare,
+  kUp,
+  kDiamond,
+  kDown,
+  kCross,
+  kPlus,
+  kStar,
+  kRing
+};
 
 /// Look of one finger; `finger` is its index in the hand model.
 struct FingerLook {

@@ -121,7 +121,7 @@ std::vector<LegendEntry> Roles() {
 void PlotGait(std::span<const Frame> history, std::span<const Event> events, const HandModel& hand,
               const PlotOptions& options, const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(SizeOf(options, 900), path);
+  Canvas canvas(SizeOf(options, 1050), path);
   const std::vector<double> t = Times(frames);
   const double strips = DrawTitle(&canvas, options.title.empty() ? "Finger gait" : options.title,
                                   Facts(frames, hand, options));

@@ -36,7 +36,7 @@ std::optional<EventLook> LookOfEvent(const Event& event) {
     case EventKind::kParameter:
       return EventLook{"parameter changed", Marker::kDiamond};
     case EventKind::kFriction:
-      return EventLook{"friction felt", Marker::kPlus};
+      return EventLook{"friction felt", Marker::kRing};
     case EventKind::kPush:
       return EventLook{"push", Marker::kUp};
     case EventKind::kReset:

@@ -25,7 +25,7 @@ class Viewers(DaemonCase):
         self.expect(0, "reset", "--object", "egg")
         self.expect(0, "step", 100, "--wait")
         self.expect(0, "reset", "--object", "sphere")
-        self.expect(0, "noise", "set", "--position", "0.5")
+        self.expect(0, "noise", "set", "--position", "0.5mm")
         self.expect(0, "grasp")
         self.expect(0, "step", 2600, "--wait")
         self.expect(0, "explore", "ring", "--max-cycles", 400)

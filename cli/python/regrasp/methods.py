@@ -205,19 +205,21 @@ class Methods:
         """
         return self._ask("pause", {})
 
-    def plot(self, name: str, file: str | None = None, overwrite: bool | None = None, last_s: float | None = None, size_m: float | None = None, title: bool | None = None) -> dict:
+    def plot(self, name: str, file: str | None = None, overwrite: bool | None = None, last_s: float | None = None, size_m: float | None = None, title: bool | None = None, font_size_pt: float | None = None, dpi: float | None = None) -> dict:
         """Draw a picture into the output directory.
         name: the picture; one of comparison, contacts, gait, incident, quality, scene.
         file: file name (not a path), written in the daemon's output directory; its suffix decides: .png, .jpg,
             .pdf, .svg; left out: NAME.png, or NAME-2.png ... where that is there.
         overwrite: replace a picture of this name; otherwise that is an error; left out: false.
         last_s: only the last so many seconds [s]; 0.1 to 600; left out: everything kept.
-        size_m: printed width; from 165 mm on text is at least 7 pt high on paper [m]; 0.05 to 1; left out: for a
-            screen.
+        size_m: printed width; quality, gait and comparison have text of at least 7 pt at any width, the others from
+            165 mm on [m]; 0.05 to 1; left out: for a screen.
         title: whether the picture has its title and its line of facts; left out: true.
+        font_size_pt: with size: no text on paper is smaller [pt]; 4 to 24; left out: 7.
+        dpi: with size: pixels per inch of a .png or .jpg; 50 to 1200; left out: 1600 pixels wide.
         Returns file (name), path, bytes, tick.
         """
-        return self._ask("plot", {"name": name, "file": file, "overwrite": overwrite, "last_s": last_s, "size_m": size_m, "title": title})
+        return self._ask("plot", {"name": name, "file": file, "overwrite": overwrite, "last_s": last_s, "size_m": size_m, "title": title, "font_size_pt": font_size_pt, "dpi": dpi})
 
     def push(self, force_n: list[float], duration_s: float | None = None) -> dict:
         """Push the object: a disturbance.
