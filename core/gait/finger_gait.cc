@@ -74,7 +74,7 @@ void FingerGait::BeginCycle() {
   refused_finger_ = -1;
   sought_ = false;
   room_for_ = -1;
-  made_room_ = sought_for_ = put_off_ = FingerSet();
+  made_room_ = sought_for_ = put_off_ = let_by_ = FingerSet();
 }
 
 StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) const {
@@ -243,7 +243,12 @@ void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* contro
     Enter(GaitPhase::kRecover);
   } else {
     ++regrasps_;
-    if (regrasp_.lost()) waiting_.add(finger);
+    if (regrasp_.lost()) {
+      waiting_.add(finger);
+    } else {
+      let_by_ = put_off_;  // it may have cleared their way
+      put_off_ = FingerSet();
+    }
     Enter(GaitPhase::kChoose);
   }
 }

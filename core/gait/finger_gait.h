@@ -142,6 +142,7 @@ class FingerGait {
     v("made_room", made_room_);
     v("sought_for", sought_for_);
     v("put_off", put_off_);
+    v("let_by", let_by_);
     v("misses", misses_);
     v("rubs", rubs_);
     v("forgiveness", forgiveness_);
@@ -261,7 +262,8 @@ class FingerGait {
   double error_position_ = 0, error_rotation_ = 0;  // when the regrasp began [m, rad]
   bool regrasp_began_ = false;
   FingerSet made_room_, sought_for_;  // in this cycle, for which fingers
-  FingerSet put_off_;  // in this cycle: others stood where they would land, they come last
+  FingerSet let_by_;                  // were put off until the last regrasp of another
+  FingerSet put_off_;  // others stood where they would land, and none has moved since
   int rubs_ = 0;       // fingers that have slid before they left
   int misses_ = 0;     // in a row
   Forgiveness forgiveness_;

@@ -37,8 +37,8 @@ void FingerGait::EndPlan(const ControlTick& tick) {
                         landing.gain > tick.gait.worth + tick.gait.worth_scarce * scarce);
   Enter(GaitPhase::kChoose);
   const bool blocked = landing.blocked && !landing.stays;
-  if (blocked && !makes_room && !put_off_.contains(finger)) {
-    put_off_.add(finger);  // the others may clear the way
+  if ((blocked || (plan_.crowded() && !worth)) && !makes_room && !put_off_.contains(finger)) {
+    put_off_.add(finger);  // another may clear the way
     waiting_.add(finger);
     return;
   }
@@ -117,18 +117,27 @@ void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench
       room_for_ = -1;
     }
   }
+  // The margins still remember the finger before in the air.
+  const bool early = ticks_ * tick.dt < tick.gait.second_thought_s;
+  FingerSet others = waiting_;
+  for (int i : put_off_) others.remove(i);
   for (const bool put_off : {false, true}) {
+    if (put_off && !others.empty() && early) return;
     for (const GaitStep& step : order_) {
-      if (put_off_.contains(step.finger) != put_off || !waiting_.contains(step.finger) ||
-          !MayLeave(tick, step.finger))
+      const int i = step.finger;
+      if (put_off_.contains(i) != put_off || !waiting_.contains(i)) continue;
+      if (!MayLeave(tick, i)) {
+        if (early && let_by_.contains(i)) return;
         continue;
-      waiting_.remove(step.finger);
-      return StartPlan(step.finger, tick.gait.plan_reach, tick);
+      }
+      waiting_.remove(i);
+      let_by_.remove(i);
+      const double wider = 1 + std::min(1.5, 0.5 * misses_);
+      return StartPlan(i, wider * tick.gait.plan_reach, tick);
     }
   }
   if (waiting_.empty()) return EndCycle(tick, wrench);
-  // The margins still remember the finger before in the air.
-  if (ticks_ * tick.dt < tick.gait.second_thought_s) return;
+  if (early) return;
   // Of the fingers that must come along, the one that is nearest to leaving.
   int refused = -1;
   for (int i : waiting_)

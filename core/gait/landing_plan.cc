@@ -224,6 +224,7 @@ bool LandingPlan::Examine(const ControlTick& tick) {
 bool LandingPlan::Step(const ControlTick& tick) {
   if (next_ < kCandidates) {
     for (int k = 0; k < kRatedPerTick && next_ < kCandidates; ++k) Remember(Rate(tick, next_++));
+    if (next_ == kCandidates) crowded_ = shortlist_[0].landing.blocked;
     if (next_ == kCandidates && tick.finger(request_.finger).ticks_without_contact == 0) {
       // Staying is examined in any case.
       if (shortlist_.full()) shortlist_.resize(kShortlist - 1);

@@ -76,6 +76,8 @@ class LandingPlan {
   bool Step(const ControlTick& tick);
   const Request& request() const { return request_; }
   const Landing& landing() const { return best_; }
+  /// Links of other fingers are in the way wherever it would land.
+  bool crowded() const { return crowded_; }
   template <typename V>
   void Fields(V& v) {
     v("request", request_);
@@ -89,6 +91,7 @@ class LandingPlan {
     v("count", count_);
     v("stay_score", stay_score_);
     v("best", best_);
+    v("crowded", crowded_);
   }
 
  private:
@@ -123,6 +126,7 @@ class LandingPlan {
   int count_ = 0;
   double stay_score_ = -10;  // far below any, where the finger stands nowhere
   Landing best_;
+  bool crowded_ = false;
 };
 
 }  // namespace regrasp

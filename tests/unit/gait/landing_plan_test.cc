@@ -187,16 +187,18 @@ TEST_F(LandingPlanTest, TellsThatAnotherFingerStandsInTheWay) {
   plan.Start(request);
   Plan(&plan);
   EXPECT_FALSE(plan.landing().blocked);
+  EXPECT_FALSE(plan.crowded());
   // Its home is where the ring finger stands.
   request.home = Home(ring).home;
   plan.Start(request);
   Plan(&plan);
-  EXPECT_FALSE(plan.landing().stays && plan.landing().blocked);
-  EXPECT_TRUE(plan.landing().stays || plan.landing().blocked);
+  EXPECT_TRUE(plan.crowded());
+  EXPECT_TRUE(plan.landing().stays);
   // In the air it cannot stay.
   estimate.fingers[middle].ticks_without_contact = 100;
   plan.Start(request);
   Plan(&plan);
+  EXPECT_TRUE(plan.crowded());
   EXPECT_TRUE(plan.landing().blocked);
 }
 
