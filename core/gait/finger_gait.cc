@@ -265,6 +265,17 @@ void FingerGait::UpdateRecover(const ControlTick& tick, ObjectWrench* wrench) {
   Enter(there() ? GaitPhase::kFinish : GaitPhase::kChoose);
 }
 
+bool FingerGait::Rests(const ControlTick& tick, const ObjectWrench& wrench) {
+  constexpr double kTurnedShare = 0.2;  // of the abort limit: what may be missing of the rotation
+  const GaitParameters& parameters = tick.gait;
+  const double rested_s = ticks_ * tick.dt;
+  if (stop_) return true;
+  if (rested_s < parameters.finish_s) return false;
+  return rested_s >= parameters.recover_limit_s ||
+         !Disturbed(tick.estimate, wrench, parameters.recovered * parameters.abort_position,
+                    kTurnedShare * parameters.abort_rotation);
+}
+
 void FingerGait::UpdateStance(const ControlTick& tick) {
   if (stance_plan_.leaves() < 0)
     SearchStance(tick);
@@ -318,7 +329,7 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
       UpdateRecover(tick, &wrench);
       break;
     case GaitPhase::kFinish:
-      if (stop_ || ticks_ * tick.dt >= tick.gait.finish_s) Enter(GaitPhase::kDone);
+      if (Rests(tick, wrench)) Enter(GaitPhase::kDone);
       break;
     case GaitPhase::kIdle:
     case GaitPhase::kDone:

@@ -202,6 +202,8 @@ class FingerGait {
   ObjectMotion UpdateMotion(const ControlTick& tick, ObjectWrench* wrench);
   void UpdateRegrasp(const ControlTick& tick, HybridController* controller, FingerTasks* tasks);
   void UpdateRecover(const ControlTick& tick, ObjectWrench* wrench);
+  /// The rotation may end: the object has come to rest where its reference is, or never will.
+  bool Rests(const ControlTick& tick, const ObjectWrench& wrench);
   /// Picks the next finger that shall and may leave, or starts the next object motion.
   void Next(const ControlTick& tick, const ObjectWrench& wrench);
   void EndCycle(const ControlTick& tick, const ObjectWrench& wrench);

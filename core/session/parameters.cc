@@ -228,7 +228,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.recover_limit_s", "s", 0.05, 20, "Longest hold after a regrasp was broken off.", kMeasured, [](P& p) { return &p.gait.recover_limit_s; }),
   Row("gait.recovered", "", 0.05, 1, "The hold ends when the object's error is below this share of the limits at which a regrasp is broken off.", kMeasured, [](P& p) { return &p.gait.recovered; }),
   Row("gait.second_thought_s", "s", 0, 5, "A finger is refused when the margin has been low for so long.", kMeasured, [](P& p) { return &p.gait.second_thought_s; }),
-  Row("gait.finish_s", "s", 0, 5, "Rest at the end of a rotation.", kMeasured, [](P& p) { return &p.gait.finish_s; }),
+  Row("gait.finish_s", "s", 0, 5, "Rest at the end of a rotation, and at most gait.recover_limit_s until the object is where it shall be.", kMeasured, [](P& p) { return &p.gait.finish_s; }),
   Row("gait.progress", "rad", 0, 0.5, "A cycle that turns the object less has not turned it.", kMeasured, [](P& p) { return &p.gait.progress; }),
   Row("gait.idle_cycles", "", 0, 1000, "By the table: the gait gives up after so many cycles in a row that have not turned the object.", kMeasured, [](P& p) { return &p.gait.idle_cycles; }),
   Row("gait.patience", "", 0, 1000, "The same with planned landings.", kMeasured, [](P& p) { return &p.gait.patience; }),
