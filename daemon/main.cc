@@ -25,6 +25,7 @@
 #include "daemon/pages/manual.h"
 #include "daemon/pages/protocol_page.h"
 #include "daemon/requests/service.h"
+#include "daemon/server/memory_reserve.h"
 #include "daemon/server/socket.h"
 #include "daemon/wire/json.h"
 
@@ -150,6 +151,8 @@ std::string Unexpected(const CLI::App& app) {
                      near.empty() ? "" : fmt::format("; did you mean {}?", near));
 }
 
+constexpr std::size_t kMemoryReserve = 4 << 20;  // [bytes]: a frame, its answers, a picture's start
+
 /// As many descriptors as the clients and the daemon's own may need, where that is allowed.
 void RaiseDescriptorLimit(int clients) {
   constexpr rlim_t kOwn = 32;
@@ -169,6 +172,7 @@ int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
   std::signal(SIGXFSZ, SIG_IGN);            // a file that may not grow is an error, not the end
   ::umask(::umask(0) | S_IWGRP | S_IWOTH);  // nobody else changes what is written
   RaiseDescriptorLimit(config.max_clients);
+  MemoryReserve::Install(kMemoryReserve);
   Daemon daemon(config);
   spdlog::info("regraspd {} listens on {}, configuration {}", Version(), daemon.socket_path(),
                config.file.empty() ? "built in" : config.file);

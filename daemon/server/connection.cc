@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <asio/buffer.hpp>
 #include <asio/post.hpp>
 #include <exception>
 
+#include "daemon/server/memory_reserve.h"
 #include "daemon/server/socket.h"
 
 namespace regrasp {
@@ -16,6 +18,14 @@ constexpr std::size_t kMaxWaiting = 128;
 /// Nothing more is asked of the daemon while so much is unsent, until half of it is written.
 constexpr std::size_t kOutputFull = 256 * 1024;
 constexpr int kLinesPerTurn = 32;  // handled before the others' turn
+
+/// What is served while memory is short.
+bool EndsSomething(std::string_view method) {
+  constexpr std::string_view kEnds[] = {"version",     "status",      "stop",
+                                        "release",     "pause",       "job.cancel",
+                                        "record.stop", "unsubscribe", "shutdown"};
+  return std::ranges::find(kEnds, method) != std::end(kEnds);
+}
 
 }  // namespace
 
@@ -158,6 +168,9 @@ void Connection::HandleRequest(const RpcRequest& request, const std::shared_ptr<
     return Fail(line.get(), &slot, *request.error);
   }
   try {
+    if (MemoryReserve::Spent() && !EndsSomething(request.method))
+      throw RpcException(ErrorCode::kBusy, "memory is short: nothing new is begun",
+                         "stop what is not needed, then try again");
     Outcome outcome = owner_->service().Call(request.method, request.params, this);
     if (outcome.begin) return Begin(std::move(outcome), line, index);
     line->barrier = std::max(line->barrier, outcome.barrier);

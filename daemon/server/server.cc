@@ -11,6 +11,7 @@
 #include <system_error>
 #include <thread>
 
+#include "daemon/server/memory_reserve.h"
 #include "daemon/wire/rpc.h"
 
 namespace regrasp {
@@ -237,6 +238,10 @@ void Server::WatchHealth() {
     Guard("looking after the clients", [this] {
       const auto now = std::chrono::steady_clock::now();
       for (const auto& connection : Connections()) connection->CheckHealth(now);
+      if (MemoryReserve::WasLetGo())
+        spdlog::error("memory was short: {}", MemoryReserve::Spent()
+                                                  ? "nothing new is begun until there is more"
+                                                  : "the reserve was used, and is there again");
       DropClosed();  // whose end could not be told
     });
     WatchHealth();

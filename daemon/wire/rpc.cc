@@ -142,6 +142,8 @@ RpcLine ParseLine(std::string_view line) {
   JsonIn document;
   try {
     document = Parse(line, &duplicate);
+  } catch (const std::bad_alloc&) {
+    throw;  // the line is not at fault
   } catch (const std::exception& e) {
     return refuse(ErrorCode::kParse, Cause(e), "send one JSON object per line, in UTF-8");
   }

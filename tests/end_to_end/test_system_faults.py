@@ -230,6 +230,61 @@ class FullDisk(SystemCase):
         self.assertEqual([f for f in os.listdir(self.out) if f.startswith(".draft") or f.endswith(".checkpoint")], [])
 
 
+class Memory(SystemCase):
+    REQUESTS = (("status", {}), ("describe", {}), ("events", {}), ("param.set", {"name": "object.friction", "value": 0.5}), ("grasp", {}),
+                ("job.list", {}), ("job.wait", {"id": 1, "timeout_s": 60}), ("stop", {}), ("plot", {"name": "scene"}),
+                ("checkpoint.save", {"name": "c"}), ("checkpoint.list", {}), ("subscribe", {"topic": "quality", "rate_hz": 50}),
+                ("record.start", {}), ("record.stop", {}), ("quality", {}))
+
+    def test_whichever_allocation_fails_the_reserve_lets_everything_come_to_its_end(self):
+        countdown = Shared(self.dir / "countdown", "<i")
+        self.addCleanup(countdown.close)
+        log = open(self.dir / "log", "w+b")
+        self.addCleanup(log.close)
+        self.start("--clock", "lockstep", "--speed", "max", stderr=log, LD_PRELOAD=preload("no_memory"),
+                   NO_MEMORY=str(self.dir / "countdown")).close()
+        for method, params in self.REQUESTS:
+            for number in (1, 3, 9, 40, 200, 1000):
+                # A new client each time: who is accepted, asks and leaves while memory is short.
+                countdown.set(number)
+                wire = Wire(self.socket)
+                answer = wire.ask(method, **params)
+                wire.close()
+                countdown.set(0)
+                self.assertIsNone(self.daemon.poll(), f"{method}, allocation {number}: the daemon has ended")
+                self.assertIsNotNone(answer, f"{method}, allocation {number}: the connection was given up")
+                self.assertNotIn("bad_alloc", json.dumps(answer))
+        wire = Wire(self.socket)
+        while wire.result("status")["clients"] != 1:
+            pass
+        while b"memory was short: the reserve was used, and is there again" not in (self.dir / "log").read_bytes():
+            wire.result("version")
+        wire.result("job.wait", id=wire.result("step", ticks=10)["job"])
+        wire.close()
+        self.daemon.terminate()
+        self.assertEqual(self.daemon.wait(HANG_S), 0)
+
+    def test_a_limit_of_memory_costs_what_needs_more_and_not_the_rest(self):
+        wire = self.start("--clock", "lockstep", "--speed", "max")
+        sizes = dict(line.split(":") for line in pathlib.Path(f"/proc/{self.daemon.pid}/status").read_text().splitlines())
+        before = resource.prlimit(self.daemon.pid, resource.RLIMIT_AS)
+        # What the process has, and no page more.
+        resource.prlimit(self.daemon.pid, resource.RLIMIT_AS, (1024 * int(sizes["VmSize"].split()[0]), before[1]))
+        for _ in range(4):
+            for method, params in self.REQUESTS:
+                answer = wire.ask(method, **params)
+                self.assertIsNotNone(answer, f"{method}: the connection was given up")
+                if method in ("status", "stop"):
+                    self.assertIn("result", answer)
+                self.assertIsNone(self.daemon.poll(), f"{method}: the daemon has ended")
+        resource.prlimit(self.daemon.pid, resource.RLIMIT_AS, before)
+        wire.result("plot", name="scene", file="after.png")
+        wire.result("job.wait", id=wire.result("step", ticks=10)["job"])
+        wire.close()
+        self.daemon.terminate()
+        self.assertEqual(self.daemon.wait(HANG_S), 0)
+
+
 class Turns(SystemCase):
     def test_one_client_with_many_lines_does_not_hold_the_others_up(self):
         watcher = self.start("--clock", "lockstep", "--speed", "max")
