@@ -241,9 +241,8 @@ int Explore(const Options& o) {
       c.type = CommandType::kExplore;
       c.finger = finger;
       c.seed = o.first + k;
-      for (Criterion criterion : {Criterion::kManipulability, Criterion::kStability,
-                                  Criterion::kSwitched, Criterion::kCombined})
-        if (Name(criterion) == o.criterion) c.criterion = criterion;
+      for (const CriterionInfo& criterion : kCriterionTable)
+        if (criterion.name == o.criterion) c.criterion = criterion.id;
       c.estimator = o.estimator == "secant" ? Estimator::kSecant : Estimator::kLeastSquares;
       const Vector3d p0 = session.truth().p_WO;
       const JobRecord job = RunJob(session, c, 60);

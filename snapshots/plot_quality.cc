@@ -16,7 +16,7 @@ namespace {
 constexpr int kOnStability = 100;
 
 /// Finger and objective that are active, as one number; -1 while nothing explores.
-int ObjectiveOf(const Frame& frame) {
+int ActiveObjective(const Frame& frame) {
   const ExplorationFrame& e = frame.exploration;
   if (!e.active) return -1;
   return static_cast<int>(e.criterion) * 1000 + (e.on_stability ? kOnStability : 0) + e.finger;
@@ -145,7 +145,7 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
     const auto state = static_cast<SessionState>(value);
     return BandLook{std::string(Name(state)), StateColour(state)};
   });
-  DrawStrip(&canvas, upper, strips + 32, 26, "objective", Bands(frames, ObjectiveOf),
+  DrawStrip(&canvas, upper, strips + 32, 26, "objective", Bands(frames, ActiveObjective),
             [&](int value) { return LookOfObjective(hand, value); });
   for (const Panel& panel : panels) {
     DrawStateBackground(&canvas, panel, states);

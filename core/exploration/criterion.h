@@ -12,7 +12,8 @@
 namespace regrasp {
 
 /// In the order of the table.
-enum class Criterion : std::uint8_t { kManipulability, kStability, kSwitched, kCombined };
+enum class Criterion : std::uint8_t { kManipulability, kStability, kSwitched, kCombined, kReserve };
+inline constexpr Criterion kLastCriterion = Criterion::kReserve;
 
 struct CriterionInfo {
   Criterion id;
@@ -26,7 +27,10 @@ inline constexpr auto kCriterionTable = std::to_array<CriterionInfo>({
     {Criterion::kStability, "stability", "of the grasp", true},
     {Criterion::kSwitched, "switched", "stability while it is below its threshold (Sec. II)", true},
     {Criterion::kCombined, "combined", "weighted sum of both (Fig. 2)", true},
+    {Criterion::kReserve, "reserve",
+     "motion reserve of the exploring finger [rad]: how far it can follow the coming turn", false},
 });
+static_assert(kCriterionTable.size() == static_cast<std::size_t>(kLastCriterion) + 1);
 static_assert([] {
   for (std::size_t i = 0; i < kCriterionTable.size(); ++i)
     if (kCriterionTable[i].id != static_cast<Criterion>(i)) return false;

@@ -1,18 +1,9 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string_view>
+#include "core/common/frames.h"
+#include "core/exploration/estimator.h"
 
 namespace regrasp {
-
-/// How the gradient is estimated. kSecant is the paper's printed line 6; kLeastSquares is the
-/// default.
-enum class Estimator : std::uint8_t { kSecant, kLeastSquares };
-inline constexpr std::array<std::string_view, 2> kEstimatorNames = {"secant", "least_squares"};
-inline std::string_view Name(Estimator estimator) {
-  return kEstimatorNames[static_cast<std::size_t>(estimator)];
-}
 
 /// Constants of Algorithm 1. lambda and sigma are the paper's; the paper gives no number for the
 /// others. Unit, range and source of each stand in the parameter table
@@ -34,11 +25,15 @@ struct ExplorationParameters {
   double limit_margin = 0.04;      ///< a joint this near to its limit is a wall [rad]
   double least_facing =
       -0.05;  ///< link axis . outward normal: above it the contact nears the side of the tip
-  double clearance = 0.002;       ///< a link of another finger this near is a wall [m]
-  double dither_speed = 0.005;    ///< least_squares: circular dither [m/s]
-  double dither_hz = 1.5;         ///< least_squares: its frequency
-  double forgetting = 0.85;       ///< least_squares: weight of the past per update
-  double stability_weight = 1.0;  ///< combined: weight of stability in the linear sum
+  double clearance = 0.002;                   ///< a link of another finger this near is a wall [m]
+  double dither_speed = 0.005;                ///< least_squares: circular dither [m/s]
+  double dither_hz = 1.5;                     ///< least_squares: its frequency
+  double forgetting = 0.85;                   ///< least_squares: weight of the past per update
+  double stability_weight = 1.0;              ///< combined: weight of stability in the linear sum
+  Vector3d turn_axis_W = -Vector3d::UnitZ();  ///< reserve: axis of the coming turn, sense included
+  double reserve_manipulability = 0.1;  ///< reserve: rad per manipulability that count with it
+  double reserve_margin_wanted = 0.4;   ///< reserve: load margin below which it counts less [N] ...
+  double reserve_margin_cost = 1.0;     ///< ... by so much [rad/N]
   double transfer_s =
       0.25;  ///< load transfer before the finger starts to slide, and after it ends [s]
   // The slide around Algorithm 1 (guided_slide.h); what differs within a gait is a gait parameter.

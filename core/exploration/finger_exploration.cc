@@ -10,6 +10,7 @@ void FingerExploration::Start(const Request& request) {
   slide.estimator = request.estimator;
   slide.seed = request.seed;
   slide.max_cycles = request.max_cycles;
+  slide.turn_axis_W = request.turn_axis_W;
   slide_.Start(slide);
 }
 

@@ -17,14 +17,16 @@ class FingerExploration {
     Criterion criterion = Criterion::kManipulability;
     Estimator estimator = Estimator::kLeastSquares;
     std::uint64_t seed = 0;
-    int max_cycles = 0;  ///< 0 takes the parameter's
+    int max_cycles = 0;                       ///< 0 takes the parameter's
+    Vector3d turn_axis_W = Vector3d::Zero();  ///< of the coming turn, for the motion reserve
     template <typename V>
     void Fields(V& v) {
       v("finger", finger, v.Finger());
-      v("criterion", criterion, Criterion::kCombined);
+      v("criterion", criterion, kLastCriterion);
       v("estimator", estimator, Estimator::kLeastSquares);
       v("seed", seed);
       v("max_cycles", max_cycles);
+      v("turn_axis_W", turn_axis_W);
     }
   };
 

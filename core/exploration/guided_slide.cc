@@ -102,9 +102,13 @@ void GuidedSlide::Reload(const ControlTick& tick, const SlideProfile& profile, F
 
 SurfaceExploration::Input GuidedSlide::Sense(const ControlTick& tick, const SlideGuide& guide) {
   const FingerEstimate& finger = tick.finger(request_.finger);
+  const double margin =
+      request_.without < 0 ? tick.margins.all : tick.margins.without[request_.without];
   const ObjectiveValue objective =
-      Objective(request_.criterion, request_.finger, tick.grasp.without(request_.without),
-                tick.estimate, tick.control, tick.exploration.stability_weight, on_stability_);
+      Objective(tick.hand,
+                {request_.criterion, request_.finger, tick.grasp.without(request_.without),
+                 request_.turn_axis_W, margin},
+                tick.estimate, tick.control, tick.exploration, on_stability_);
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};

@@ -76,16 +76,18 @@ class GuidedSlide {
     std::uint64_t seed = 0;
     int max_cycles = 0;  ///< N_max; 0 takes the parameter's
     int without = -1;    ///< the stability that counts is that without this finger; -1: with all
-    Vector3d gradient_W = Vector3d::Zero();  ///< start of Algorithm 1 [1/m]; zero: random
-    bool leaves = false;                     ///< goes away after unloading
+    Vector3d turn_axis_W = Vector3d::Zero();  ///< of the coming turn, for the motion reserve
+    Vector3d gradient_W = Vector3d::Zero();   ///< start of Algorithm 1 [1/m]; zero: random
+    bool leaves = false;                      ///< goes away after unloading
     template <typename V>
     void Fields(V& v) {
       v("finger", finger, v.Finger());
-      v("criterion", criterion, Criterion::kCombined);
+      v("criterion", criterion, kLastCriterion);
       v("estimator", estimator, Estimator::kLeastSquares);
       v("seed", seed);
       v("max_cycles", max_cycles);
       v("without", without, v.Finger());
+      v("turn_axis_W", turn_axis_W);
       v("gradient_W", gradient_W);
       v("leaves", leaves);
     }

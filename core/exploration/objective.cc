@@ -1,7 +1,9 @@
 #include "core/exploration/objective.h"
 
+#include <algorithm>
 #include <cassert>
 
+#include "core/hand/finger_reach.h"
 #include "core/quality/measures.h"
 
 namespace regrasp {
@@ -20,16 +22,25 @@ double GraspStability(const Estimate& estimate, FingerSet fingers,
   return measure.compute(input);
 }
 
-ObjectiveValue Objective(Criterion criterion, int finger, FingerSet fingers,
-                         const Estimate& estimate, const ControlParameters& parameters,
-                         double stability_weight, bool was_on_stability) {
-  const double manipulability = estimate.fingers[finger].manipulability;
-  if (criterion == Criterion::kManipulability) return {manipulability, false};
-  const double stability = GraspStability(estimate, fingers, parameters);
-  if (criterion == Criterion::kStability) return {stability, true};
-  if (criterion == Criterion::kCombined)
-    return {manipulability + stability_weight * stability, false};
-  const double threshold = parameters.stability_threshold * (was_on_stability ? kHysteresis : 1.0);
+ObjectiveValue Objective(const HandModel& hand, const ObjectiveOf& of, const Estimate& estimate,
+                         const ControlParameters& control, const ExplorationParameters& exploration,
+                         bool was_on_stability) {
+  const double manipulability = estimate.fingers[of.finger].manipulability;
+  if (of.criterion == Criterion::kManipulability) return {manipulability, false};
+  if (of.criterion == Criterion::kReserve) {
+    const FingerPosture now = PostureAt(hand, of.finger, AnglesOf(hand, of.finger, estimate.q));
+    const double reserve = MotionReserve(hand, of.finger, now, estimate.p_WO, of.turn_axis_W,
+                                         exploration.limit_margin, kMostReserve);
+    const double missing = std::max(0.0, exploration.reserve_margin_wanted - of.margin);
+    return {reserve + exploration.reserve_manipulability * manipulability -
+                exploration.reserve_margin_cost * missing,
+            false};
+  }
+  const double stability = GraspStability(estimate, of.fingers, control);
+  if (of.criterion == Criterion::kStability) return {stability, true};
+  if (of.criterion == Criterion::kCombined)
+    return {manipulability + exploration.stability_weight * stability, false};
+  const double threshold = control.stability_threshold * (was_on_stability ? kHysteresis : 1.0);
   const bool on_stability = stability < threshold;
   return {on_stability ? stability : manipulability, on_stability};
 }

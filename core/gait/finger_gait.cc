@@ -129,7 +129,8 @@ Regrasp::Request FingerGait::RequestOf(const GaitStep& step, int next,
   if (planned(tick) && !scarce && rubs_ < tick.gait.rubs) request.rub_s = tick.gait.rub_s;
   request.explore = Explores(tick, step.finger);
   request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
-  request.slide.criterion = Criterion::kSwitched;
+  request.slide.criterion = tick.gait.criterion;
+  request.slide.turn_axis_W = sign_ * request_.axis_W;
   if (step.objective == GaitObjective::kStabilityWithoutNext && next >= 0) {
     request.slide.criterion = Criterion::kStability;
     request.slide.without = next;

@@ -150,7 +150,7 @@ void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench
     room_queue_ = tick.grasp.without(refused);
     return;
   }
-  if (must && !sought_for_.contains(refused)) {
+  if (must && tick.gait.whole_stance && !sought_for_.contains(refused)) {
     sought_for_.add(refused);
     stance_plan_.Start(tick, refused, tick.gait.stance_reach,
                        request_.seed + static_cast<std::uint64_t>(searches_++));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/exploration/criterion.h"
 #include "core/exploration/exploration_parameters.h"
 
 namespace regrasp {
@@ -34,7 +35,9 @@ struct GaitParameters {
   bool by_need = false;  ///< the finger farthest from its target first, else the order of the table
   bool hop = true;       ///< a finger hops to its target, else it slides
   bool plan = true;      ///< landings are planned on the felt surface, else at the first contacts
-  bool forgive = true;   ///< the reference follows an error that lasts
+  bool map = true;       ///< plan: what was felt is kept, else only the present contacts are known
+  bool whole_stance = true;  ///< plan: the others' contacts are planned together for a refused one
+  bool forgive = true;       ///< the reference follows an error that lasts
   double reserve_wanted = 0.6;  ///< plan: motion reserve that counts in full [rad]
   double doubt =
       0.25;  ///< of the spread of felt normals about a contact: its normal may be so far off
@@ -91,6 +94,7 @@ struct GaitParameters {
   double abort_rotation = 0.2094395102;  ///< (12 deg)
   // Exploring.
   GaitExplore explore = GaitExplore::kAlways;
+  Criterion criterion = Criterion::kSwitched;  ///< of all but the finger before the opposing one
   double explore_unknown = 0.12;  ///< unknown: from this angle to what was felt on [rad]
   double explore_gain = 0.02;     ///< ... or from this gain of its last explorations on
   double disc_radius =

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
-#include "core/gait/finger_reach.h"
+#include "core/hand/finger_reach.h"
 
 namespace regrasp {
 namespace {

@@ -17,8 +17,8 @@
 /// margins only the best few.
 
 #include "core/control/control_tick.h"
-#include "core/gait/finger_reach.h"
 #include "core/gait/stance.h"
+#include "core/hand/finger_reach.h"
 #include "core/shape/felt_surface.h"
 
 namespace regrasp {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/gait/finger_reach.h"
 #include "core/gait/gait_parameters.h"
+#include "core/hand/finger_reach.h"
 
 namespace regrasp {
 

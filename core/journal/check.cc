@@ -235,8 +235,7 @@ void CheckEntry(const JournalEntry& entry, const SessionConfig& config) {
   CheckRange("tick", static_cast<double>(entry.tick), 0, static_cast<double>(kMaxTick));
   const Command& c = entry.command;
   CheckRange("job", static_cast<double>(c.job), 0, 9007199254740992.0);
-  CheckRange("criterion", static_cast<double>(c.criterion), 0,
-             static_cast<double>(Criterion::kCombined));
+  CheckRange("criterion", static_cast<double>(c.criterion), 0, static_cast<double>(kLastCriterion));
   CheckRange("estimator", static_cast<double>(c.estimator), 0,
              static_cast<double>(Estimator::kLeastSquares));
   if (c.type == CommandType::kExplore)

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/exploration/criterion.h"
-#include "core/exploration/exploration_parameters.h"
+#include "core/exploration/estimator.h"
 
 namespace regrasp {
 namespace {

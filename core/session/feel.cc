@@ -11,6 +11,7 @@ constexpr double kLeastForce = 0.1;   // [N]
 
 void Session::Impl::Feel() {
   if (tick % kInterval != 0) return;
+  if (!parameters.gait.map) felt.Reset();
   const Estimate& e = estimator.estimate();
   // The sensed pose lags behind the contacts, which move with the joint angles.
   const double late_s = parameters.control.pose_filter_s - parameters.control.joint_filter_s;

@@ -5,9 +5,11 @@
 namespace regrasp {
 namespace {
 
-bool CountsStability(const Regrasp& regrasp) {
+/// What the regrasp maximises now, one of its two measures where it switches between them.
+Criterion Counts(const Regrasp& regrasp) {
   const GuidedSlide& slide = regrasp.slide();
-  return slide.request().criterion == Criterion::kStability || slide.on_stability();
+  if (slide.request().criterion != Criterion::kSwitched) return slide.request().criterion;
+  return slide.on_stability() ? Criterion::kStability : Criterion::kManipulability;
 }
 
 }  // namespace
@@ -15,10 +17,9 @@ bool CountsStability(const Regrasp& regrasp) {
 double GaitReport::TruePhi(const Regrasp& regrasp, const ActivityContext& context) const {
   const GuidedSlide::Request& request = regrasp.slide().request();
   context.judge.Look(context.tick, context.world.state(), context.parameters.control);
-  return context.judge.Phi(
-      CountsStability(regrasp) ? Criterion::kStability : Criterion::kManipulability, request.finger,
-      context.now.grasp.without(request.without), context.parameters,
-      regrasp.slide().on_stability());
+  return context.judge.Phi({Counts(regrasp), request.finger,
+                            context.now.grasp.without(request.without), request.turn_axis_W},
+                           context.parameters, regrasp.slide().on_stability());
 }
 
 void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& context) {
@@ -28,12 +29,13 @@ void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& contex
   last_.aborted = regrasp.aborted();
   last_.phi_after = TruePhi(regrasp, context);
   if (!regrasp.request().explore) last_.phi_start = last_.phi_before;
-  const bool stability = CountsStability(regrasp);
-  Event& event = context.log.Emit(
-      context.tick, EventKind::kRegrasp, last_.finger, last_.phi_after,
-      "%s regrasped: %s %.4f -> %.4f", context.now.hand.fingers[last_.finger].name.c_str(),
-      stability ? "stability" : "manipulability", last_.phi_before, last_.phi_after);
-  if (regrasp.request().explore && !stability && !last_.aborted) event.from = last_.phi_start;
+  const Criterion criterion = Counts(regrasp);
+  Event& event = context.log.Emit(context.tick, EventKind::kRegrasp, last_.finger, last_.phi_after,
+                                  "%s regrasped: %s %.4f -> %.4f",
+                                  context.now.hand.fingers[last_.finger].name.c_str(),
+                                  Name(criterion).data(), last_.phi_before, last_.phi_after);
+  if (regrasp.request().explore && criterion != Criterion::kStability && !last_.aborted)
+    event.from = last_.phi_start;
 }
 
 void GaitReport::Report(const FingerGait& gait, const ActivityContext& context) {

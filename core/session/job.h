@@ -59,7 +59,7 @@ struct ExploreResult {
   template <typename V>
   void Fields(V& v) {
     v("finger", finger, v.Finger());
-    v("criterion", criterion, Criterion::kCombined);
+    v("criterion", criterion, kLastCriterion);
     v("estimator", estimator, Estimator::kLeastSquares);
     v("converged", converged);
     v("reason", reason, ExploreReason::kObjectMoved);
@@ -138,7 +138,7 @@ struct RegraspRecord {
   template <typename V>
   void Fields(V& v) {
     v("finger", finger, v.Finger());
-    v("criterion", criterion, Criterion::kCombined);
+    v("criterion", criterion, kLastCriterion);
     v("on_stability", on_stability);
     v("aborted", aborted);
     v("phi_before", phi_before);

@@ -1,5 +1,7 @@
 #include "core/session/judge.h"
 
+#include "core/quality/load_margin.h"
+
 namespace regrasp {
 namespace {
 
@@ -17,11 +19,15 @@ void Judge::Look(std::int64_t tick, const WorldState& truth, const ControlParame
   estimator_.Update(sensors_.Read(tick, truth), Unfiltered(parameters));
 }
 
-double Judge::Phi(Criterion criterion, int finger, FingerSet fingers, const Parameters& parameters,
-                  bool on_stability) const {
-  return Objective(criterion, finger, fingers, estimate(), parameters.control,
-                   parameters.exploration.stability_weight, on_stability)
-      .phi;
+double Judge::Phi(ObjectiveOf of, const Parameters& parameters, bool on_stability) const {
+  const ControlParameters& control = parameters.control;
+  if (of.criterion == Criterion::kReserve) {
+    const Grasp grasp = GraspOf(estimate(), of.fingers, control.friction_estimate);
+    of.margin =
+        LoadMargin({grasp.data(), grasp.size()}, control.mass_estimate * parameters.gravity_W,
+                   estimate().object_scale, control.max_normal_force);
+  }
+  return Objective(*hand_, of, estimate(), control, parameters.exploration, on_stability).phi;
 }
 
 }  // namespace regrasp

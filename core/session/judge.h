@@ -12,14 +12,14 @@ namespace regrasp {
 
 class Judge {
  public:
-  Judge(const HandModel& hand, double dt) : sensors_(hand, dt, 0), estimator_(hand, dt) {}
+  Judge(const HandModel& hand, double dt)
+      : hand_(&hand), sensors_(hand, dt, 0), estimator_(hand, dt) {}
 
   /// Takes the truth after the last step in. `tick` never decreases.
   void Look(std::int64_t tick, const WorldState& truth, const ControlParameters& parameters);
   const Estimate& estimate() const { return estimator_.estimate(); }
-  /// What exploration maximises, by the truth last looked at. `fingers`: of the grasp.
-  double Phi(Criterion criterion, int finger, FingerSet fingers, const Parameters& parameters,
-             bool on_stability) const;
+  /// What exploration maximises, by the truth last looked at; of.margin is found here.
+  double Phi(ObjectiveOf of, const Parameters& parameters, bool on_stability) const;
   template <typename V>
   void Fields(V& v) {
     v("sensors", sensors_);
@@ -27,6 +27,7 @@ class Judge {
   }
 
  private:
+  const HandModel* hand_;
   Sensors sensors_;  // without noise
   StateEstimator estimator_;
 };

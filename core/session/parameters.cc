@@ -149,6 +149,10 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("exploration.speed_max", "m/s", 0.0005, 0.1, "Line 11: highest speed of the contact.", kOurs, [](P& p) { return &p.exploration.speed_max; }),
   Row("exploration.speed_min", "m/s", 0, 0.05, "Line 11: least speed of the contact.", kMeasured, [](P& p) { return &p.exploration.speed_min; }),
   Row("exploration.stability_weight", "", 0, 100, "Criterion combined: weight of stability in the linear sum.", "Fig. 2; value ours", [](P& p) { return &p.exploration.stability_weight; }),
+  Row("exploration.turn_axis", "", -1, 1, "Criterion reserve, explore: axis of the coming turn in W, sense included; its length does not count, but 0 is refused.", kOurs, [](P& p) { return &p.exploration.turn_axis_W; }),
+  Row("exploration.reserve_manipulability", "rad", 0, 10, "Criterion reserve: manipulability counts so much beside it.", kOurs, [](P& p) { return &p.exploration.reserve_manipulability; }),
+  Row("exploration.reserve_margin_wanted", "N", 0, 10, "Criterion reserve: load margin of the grasp that is to be kept.", kOurs, [](P& p) { return &p.exploration.reserve_margin_wanted; }),
+  Row("exploration.reserve_margin_cost", "rad/N", 0, 100, "Criterion reserve: what each newton below that costs.", kOurs, [](P& p) { return &p.exploration.reserve_margin_cost; }),
   Row("exploration.transfer_s", "s", 0.01, 5, "Time of load transfer before and after sliding.", kOurs, [](P& p) { return &p.exploration.transfer_s; }),
   Row("exploration.update_cycles", "ticks", 1, 10000, "Line 4: n, ticks between updates of the gradient.", kMeasured, [](P& p) { return &p.exploration.update_cycles; }),
   Row("exploration.arrived", "m", 5e-05, 0.005, "The way back to the best contact, and to a recalled one, ends this near.", kMeasured, [](P& p) { return &p.exploration.arrived; }),
@@ -180,6 +184,9 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.down_speed", "m/s", 0.002, 0.3, "Hop: speed of the fingertip on its way down to the surface.", kMeasured, [](P& p) { return &p.gait.down_speed; }),
   Row("gait.estimator", kEstimatorNames, "Exploring: how the gradient is estimated; secant is the rule as printed.", kMeasured, [](P& p) { return &p.gait.estimator; }),
   Row("gait.explore", kGaitExploreNames, "Exploring: which regrasping fingers explore; unknown: those on unknown surface, and those whose last explorations gained enough.", kMeasured, [](P& p) { return &p.gait.explore; }),
+  Row("gait.criterion", kCriterionNames, "Exploring: what a finger maximises, but the one before the opposing finger: that one makes stable what holds without the opposing finger.", "Sec. III b: switched", [](P& p) { return &p.gait.criterion; }),
+  Row("gait.map", "Planned landings: what was felt is kept; else only the present contacts are known.", kOurs, [](P& p) { return &p.gait.map; }),
+  Row("gait.whole_stance", "Planned landings: contacts of all the others are planned together where a finger is still refused.", kMeasured, [](P& p) { return &p.gait.whole_stance; }),
   Row("gait.explore_gain", "", 0, 1, "Exploring where unknown: also with this relative gain of the finger's last explorations.", kOurs, [](P& p) { return &p.gait.explore_gain; }),
   Row("gait.explore_unknown", "rad", 0, 3.2, "Exploring where unknown: from this angle between the landing and what was felt on.", kOurs, [](P& p) { return &p.gait.explore_unknown; }),
   Row("gait.explore_s", "s", 0.05, 20, "Exploring: longest run of Algorithm 1 per regrasp.", kOurs, [](P& p) { return &p.gait.explore_s; }),
@@ -289,21 +296,6 @@ const auto& Sorted() {
   return sorted;
 }
 
-/// What gait.preset sets besides itself for the paper's gait; for the planned one the defaults.
-struct PaperValue {
-  std::string_view name;
-  double value;
-};
-constexpr auto kPaperGait = std::to_array<PaperValue>({
-    {"gait.mode", static_cast<double>(GaitMode::kExploring)},
-    {"gait.plan", 0},
-    {"gait.forgive", 0},
-    {"gait.margin_min", 0.10},
-    {"gait.max_excursion", 0.016},
-    {"gait.along_speed", 0},
-    {"gait.explore", static_cast<double>(GaitExplore::kAlways)},
-});
-
 }  // namespace
 
 std::string_view Name(ParameterType type) {
@@ -318,25 +310,6 @@ int FindParameter(std::string_view name) {
   for (std::size_t i = 0; i < table.size(); ++i)
     if (table[i].name == name) return static_cast<int>(i);
   return -1;
-}
-
-bool IsPreset(const ParameterInfo& info) { return info.name == "gait.preset"; }
-
-bool IsSetByPreset(const ParameterInfo& info) {
-  return std::any_of(kPaperGait.begin(), kPaperGait.end(),
-                     [&](const PaperValue& row) { return row.name == info.name; });
-}
-
-void SetByUser(const ParameterInfo& info, const Vector3d& value, Parameters* parameters) {
-  info.set(parameters, value);
-  if (!IsPreset(info)) return;
-  const bool paper = parameters->gait.preset == GaitPreset::kPaper;
-  const Parameters planned;
-  for (const PaperValue& row : kPaperGait) {
-    const ParameterInfo& other =
-        ParameterTable()[static_cast<std::size_t>(FindParameter(row.name))];
-    other.set(parameters, paper ? Vector3d(row.value, 0, 0) : other.get(planned));
-  }
 }
 
 Parameters DefaultParameters(const LoadedScenario& model) {

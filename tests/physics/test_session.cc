@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/hand/finger_reach.h"
 #include "core/sensing/sensors.h"
 #include "tests/physics/malloc_counter.h"
 #include "tests/physics/session_run.h"
@@ -175,6 +176,65 @@ TEST(Session, EachFingerExploresUphillWithoutDrop) {
         job.explore.phi_true_initial, job.explore.phi_true_final, job.explore.cycles,
         Name(job.explore.reason).data());
   }
+}
+
+// Each finger, either sense of the turn; judged by the true joint angles, not by what it maximised.
+TEST(Session, ExploringByReserveLeavesMoreWayForTheTurn) {
+  const HandModel& hand = ShadowConfig().model.hand;
+  double before_sum = 0, after_sum = 0;
+  int done = 0, more = 0;
+  for (int finger = 0; finger < hand.num_fingers(); ++finger) {
+    for (const double sense : {-1.0, 1.0}) {
+      SessionRun run(3);
+      ASSERT_TRUE(run.Grasp());
+      const Vector3d axis = sense * Vector3d::UnitZ();
+      run.Set("exploration.turn_axis", axis);
+      const auto reserve = [&] {
+        const WorldState& truth = run.session.truth();
+        const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, truth.q));
+        return MotionReserve(hand, finger, now, truth.p_WO, axis, 0.04, kMostReserve);
+      };
+      const double before = reserve();
+      ASSERT_EQ(run.Give(CommandType::kExplore,
+                         [&](Command* c) {
+                           c->finger = finger;
+                           c->criterion = Criterion::kReserve;
+                           c->seed = 3;
+                         })
+                    .kind,
+                Kind::kAllowed);
+      ASSERT_TRUE(run.FinishJob(30));
+      const JobRecord job = run.Job();
+      done += job.state == JobState::kDone;
+      EXPECT_EQ(job.explore.criterion, Criterion::kReserve);
+      const double after = reserve();
+      std::printf("reserve of %s, %+.0f z: %.3f -> %.3f rad; phi %.3f -> %.3f\n",
+                  hand.fingers[static_cast<std::size_t>(finger)].name.c_str(), sense, before, after,
+                  job.explore.phi_true_initial, job.explore.phi_true_final);
+      more += after > before;
+      before_sum += before;
+      after_sum += after;
+    }
+  }
+  EXPECT_GE(done, 9);  // of 10: the little finger may slide off the end of its tip
+  EXPECT_GE(more, 7);
+  EXPECT_GT(after_sum / before_sum, 1.2);
+}
+
+TEST(Session, AReserveNeedsTheAxisOfATurn) {
+  SessionRun run;
+  ASSERT_TRUE(run.Grasp());
+  run.Set("exploration.turn_axis", Vector3d(Vector3d::Zero()));
+  const auto explore = [&](Criterion criterion) {
+    return run.Give(CommandType::kExplore, [&](Command* c) {
+      c->finger = 1;
+      c->criterion = criterion;
+    });
+  };
+  const Verdict verdict = explore(Criterion::kReserve);
+  EXPECT_EQ(verdict.kind, Kind::kBadState);
+  EXPECT_NE(std::string(verdict.reason).find("exploration.turn_axis"), std::string::npos);
+  EXPECT_EQ(explore(Criterion::kManipulability).kind, Kind::kAllowed);
 }
 
 // What the controller finds out is told as such: nobody has changed a parameter.

@@ -43,8 +43,8 @@ void ExploreActivity::Start(const Command& command, const ActivityContext& conte
   result.criterion = command.criterion;
   result.estimator = command.estimator;
   result.seed = command.seed;
-  request_ = {command.finger, command.criterion, command.estimator, command.seed,
-              command.max_cycles};
+  request_ = {command.finger, command.criterion,  command.estimator,
+              command.seed,   command.max_cycles, TurnAxisOf(context.now.exploration)};
   if (context.now.margins.without[command.finger] >= context.now.gait.margin_min) {
     exploration_.Start(request_);
     return;
@@ -114,8 +114,9 @@ int ExploreActivity::MaxCycles(const ActivityContext& context) const {
 
 double ExploreActivity::TruePhi(const ActivityContext& context) const {
   context.judge.Look(context.tick, context.world.state(), context.parameters.control);
-  return context.judge.Phi(request_.criterion, request_.finger, context.now.grasp,
-                           context.parameters, exploration_.on_stability());
+  return context.judge.Phi(
+      {request_.criterion, request_.finger, context.now.grasp, request_.turn_axis_W},
+      context.parameters, exploration_.on_stability());
 }
 
 void ExploreActivity::Assess(const ActivityContext& context) {

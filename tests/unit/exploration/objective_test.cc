@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 
 #include "core/exploration/walls.h"
+#include "core/hand/finger_reach.h"
 #include "core/quality/stability.h"
 #include "tests/unit/control/held_sphere.h"
 
@@ -16,7 +17,10 @@ constexpr FingerSet kAll = FingerSet::First(5);
 class ObjectiveTest : public ::testing::Test {
  protected:
   ObjectiveValue Value(Criterion criterion, double weight = 1, bool was_on_stability = false) {
-    return Objective(criterion, 2, kAll, estimate_, parameters_, weight, was_on_stability);
+    ExplorationParameters exploration;
+    exploration.stability_weight = weight;
+    return Objective(hand_, {criterion, 2, kAll}, estimate_, parameters_, exploration,
+                     was_on_stability);
   }
   const LoadedScenario scenario_ = ShadowHand();
   const HandModel& hand_ = scenario_.hand;
@@ -59,6 +63,38 @@ TEST_F(ObjectiveTest, SwitchHasHysteresis) {
   EXPECT_TRUE(On(1.01 * stability, false));
   EXPECT_TRUE(On(0.99 * stability, true));  // stays until 5 % above the threshold
   EXPECT_FALSE(On(0.94 * stability, true));
+}
+
+TEST_F(ObjectiveTest, ReserveCountsManipulabilityAndAMarginThatIsMissing) {
+  const Vector3d axis = -Vector3d::UnitZ();
+  ExplorationParameters exploration;
+  exploration.reserve_manipulability = 0.3;
+  exploration.reserve_margin_wanted = 0.5;
+  exploration.reserve_margin_cost = 2;
+  const auto phi = [&](const Vector3d& turn_axis_W, double margin) {
+    const ObjectiveValue value =
+        Objective(hand_, {Criterion::kReserve, 2, kAll, turn_axis_W, margin}, estimate_,
+                  parameters_, exploration, false);
+    EXPECT_FALSE(value.on_stability);
+    return value.phi;
+  };
+  const FingerPosture now = PostureAt(hand_, 2, AnglesOf(hand_, 2, estimate_.q));
+  const double reserve =
+      MotionReserve(hand_, 2, now, estimate_.p_WO, axis, exploration.limit_margin, kMostReserve);
+  EXPECT_GT(reserve, 0.05);
+  EXPECT_LT(reserve, kMostReserve);
+  const double manipulability = 0.3 * estimate_.fingers[2].manipulability;
+  EXPECT_NEAR(phi(axis, 1), reserve + manipulability, 1e-12);
+  EXPECT_NEAR(phi(axis, 0.4), reserve + manipulability - 0.2, 1e-12);
+  EXPECT_NEAR(phi(Vector3d::Zero(), 1), kMostReserve + manipulability, 1e-12);
+}
+
+TEST_F(ObjectiveTest, TheAxisOfTheTurnHasNoLength) {
+  ExplorationParameters exploration;
+  exploration.turn_axis_W = Vector3d(0, 0.3, 0.4);
+  EXPECT_LT((TurnAxisOf(exploration) - Vector3d(0, 0.6, 0.8)).norm(), 1e-12);
+  exploration.turn_axis_W.setZero();
+  EXPECT_TRUE(TurnAxisOf(exploration).isZero(0));
 }
 
 class WallsTest : public ObjectiveTest {};

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/exploration/exploration_parameters.h"
-#include "core/gait/finger_reach.h"
 #include "core/gait/gait_parameters.h"
+#include "core/hand/finger_reach.h"
 #include "core/shape/felt_surface.h"
 #include "tests/unit/control/held_sphere.h"
 

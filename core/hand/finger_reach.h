@@ -41,7 +41,7 @@ FingerPosture ReachFor(const HandModel& hand, int finger, const FingerPosture& f
 /// Motion reserve [rad]: how far the object can turn about `axis_W` (unit, sense included) through
 /// `p_WO` with this finger following, until one of its joints comes within `margin` [rad] of its
 /// limit: q += J⁺ (ω × r) in small steps, with a pull away from the limits in the null space. At
-/// most `most`.
+/// most `most`, which is also that of no axis (zero).
 double MotionReserve(const HandModel& hand, int finger, const FingerPosture& from,
                      const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most);
 

@@ -1,4 +1,4 @@
-#include "core/gait/finger_reach.h"
+#include "core/hand/finger_reach.h"
 
 #include <algorithm>
 
@@ -119,23 +119,30 @@ FingerPosture ReachFor(const HandModel& hand, int finger, const FingerPosture& f
 
 double MotionReserve(const HandModel& hand, int finger, const FingerPosture& from,
                      const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most) {
+  if (axis_W.isZero(0)) return most;
   const auto& joints = hand.fingers[finger].joints;
   FingerPosture posture = from;
   Vector3d r = from.p_WF - p_WO;
   const Matrix3d turn = Eigen::AngleAxisd(kTurnStep, axis_W).toRotationMatrix();
   for (double angle = 0; angle < most; angle += kTurnStep) {
     r = turn * r;
-    posture = PostureAt(hand, finger,
-                        Stepped(hand, finger, posture, p_WO + r - posture.p_WF, 0.0, kMiddlePull));
+    const FingerVector before = posture.q;
+    posture = PostureAt(
+        hand, finger,
+        Stepped(hand, finger, posture, p_WO + r - posture.p_WF, -kLongestStep, kMiddlePull));
     if ((p_WO + r - posture.p_WF).norm() > kTolerance) return angle;
+    double share = 1;  // of this step, until the first joint comes too near to its limit
     for (std::size_t k = 0; k < joints.size(); ++k) {
       const Joint& joint = hand.joints[joints[k]];
       const auto i = static_cast<Eigen::Index>(k);
-      const double moved = posture.q[i] - from.q[i];
-      if ((posture.q[i] > joint.upper - margin && moved > 0) ||
-          (posture.q[i] < joint.lower + margin && moved < 0))
-        return angle;
+      const double sense = posture.q[i] > from.q[i] ? 1 : -1;
+      const double limit = sense > 0 ? joint.upper - margin : joint.lower + margin;
+      const double over = sense * (posture.q[i] - limit);
+      if (over <= 0) continue;
+      const double moved = sense * (posture.q[i] - before[i]);
+      share = std::min(share, moved > over ? 1 - over / moved : 0.0);
     }
+    if (share < 1) return std::min(most, angle + share * kTurnStep);
   }
   return most;
 }
