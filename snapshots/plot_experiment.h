@@ -31,6 +31,21 @@ struct ExperimentPicture {
   std::vector<ExperimentGroup> groups;
 };
 
+/// One predictor of failures: area under its ROC with a 95 % interval, and the ROC itself.
+struct PredictorMark {
+  std::string name, form;
+  double area = 0, low = 0, high = 1;
+  std::vector<double> false_alarms, foretold;  ///< ascending
+};
+
+struct PredictionPicture {
+  std::string title, facts;
+  std::vector<PredictorMark> predictors;  ///< best first
+};
+
+/// ROC curves of the best predictors beside the areas of all. Throws as PlotExperiment().
+void PlotPrediction(const PredictionPicture& picture, const std::string& path);
+
 /// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of each measured
 /// quantity beside them. Groups of several panels go one below the other. Throws std::runtime_error
 /// with `path` as the other pictures do (snapshots.h).

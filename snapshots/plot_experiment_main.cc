@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -116,6 +117,35 @@ ExperimentPicture PictureOf(const Json& summary) {
   return picture;
 }
 
+/// The best form of each measure.
+PredictionPicture PredictionOf(const Json& summary) {
+  const Json &plan = summary.at("experiment"), &prediction = summary.at("prediction");
+  PredictionPicture picture;
+  picture.title = "What foretells that a gait fails, 0.2 to 1 s ahead";
+  picture.facts = fmt::format(
+      "{} runs, {} drops and slips, {} windows before one and {} that hold, noise {}, seeds {} to "
+      "{}, regrasp {}",
+      prediction.at("runs").get<int>(), prediction.at("failures").get<int>(),
+      prediction.at("windows_failing").get<int>(), prediction.at("windows_holding").get<int>(),
+      Joined(plan.at("noise")), plan.at("first_seed").get<std::int64_t>(),
+      plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
+      plan.at("version").get<std::string>());
+  for (const Json& json : prediction.at("predictors")) {
+    const std::string name = json.at("title");
+    const bool known = std::any_of(picture.predictors.begin(), picture.predictors.end(),
+                                   [&](const PredictorMark& p) { return p.name == name; });
+    if (known) continue;
+    PredictorMark mark{name, json.at("form"), json.at("auc"), json.at("low"), json.at("high"), {},
+                       {}};
+    for (const Json& point : json.at("roc")) {
+      mark.false_alarms.push_back(point.at(0));
+      mark.foretold.push_back(point.at(1));
+    }
+    picture.predictors.push_back(std::move(mark));
+  }
+  return picture;
+}
+
 }  // namespace
 }  // namespace regrasp
 
@@ -127,6 +157,10 @@ int main(int argc, char** argv) {
   try {
     std::ifstream file(argv[1]);
     const auto summary = nlohmann::ordered_json::parse(file);
+    if (summary.contains("prediction")) {
+      regrasp::PlotPrediction(regrasp::PredictionOf(summary), argv[2]);
+      return 0;
+    }
     const auto draw = regrasp::IsSweep(summary) ? regrasp::PlotSweep : regrasp::PlotExperiment;
     draw(regrasp::PictureOf(summary), argv[2]);
     return 0;

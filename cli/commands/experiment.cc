@@ -24,6 +24,7 @@ void Print(Context& context, const Invocation& invocation, const Json& summary,
            const fs::path& directory) {
   const TableFormat format = TableFormatOf(invocation.Text("format", "text"));
   std::vector<TableData> tables = {GroupTable(summary)};
+  if (summary.contains("prediction")) tables.push_back(PredictionTable(summary));
   if (summary.contains("comparisons")) tables.push_back(ComparisonTable(summary));
   if (invocation.Has("precision"))
     tables.push_back(
@@ -212,6 +213,16 @@ std::vector<CommandSpec> ExperimentCommands() {
             Number("push", "--push", ArgKind::kNumber, "N",
                    "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
            "5", "paper")),
+       Experiment},
+      {"experiment prediction", kGroup,
+       "which measure of a running gait foretells a drop or slip, 0.2 to 1 s ahead", nullptr,
+       WithoutObject(With(
+           {TextArg("objects", "--objects", "NAMES",
+                    "separated by commas, each as it is, pushed and slippery; zoo: all of it",
+                    "twelve bodies of all kinds"),
+            TextArg("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
+            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1")},
+           "2", "paper,coarse")),
        Experiment},
       {"experiment noise-sweep", kGroup,
        "explorations at every noise preset, the estimators side by side", nullptr,

@@ -43,16 +43,17 @@ void AddZoo(SteppedDaemon* daemon, Plan* plan) {
   }
   for (const std::string& name : plan->objects)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw CliError(
-          kUsage, fmt::format("--objects '{}' is none of {}, zoo", name, fmt::join(known, ", ")),
-          fmt::format("regrasp experiment zoo --objects {} -o DIR", NearestName(name, known)));
-  ExpandZoo(plan);
+      throw CliError(kUsage,
+                     fmt::format("--objects '{}' is none of {}, zoo", name, fmt::join(known, ", ")),
+                     fmt::format("regrasp experiment {} --objects {} -o DIR", plan->experiment,
+                                 NearestName(name, known)));
+  plan->experiment == "zoo" ? ExpandZoo(plan) : ExpandHazards(plan);
 }
 
 }  // namespace
 
 void CompletePlan(Plan* plan) {
-  if (plan->experiment == "zoo" && plan->cases.empty()) {
+  if (!plan->objects.empty() && plan->cases.empty()) {
     SteppedDaemon daemon(plan->DaemonArguments());
     AddZoo(&daemon, plan);
   }

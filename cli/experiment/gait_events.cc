@@ -28,6 +28,7 @@ void GaitEvents::Read() {
     const std::string kind = event.at("kind");
     slips_ += kind == "slip";
     refusals_ += kind == "refused";
+    if (kind == "slip" || kind == "dropped") failures_s_.push_back(event.at("t_s"));
     if (kind == "regrasp" && At(event, "from").is_number())
       explorations_[Plain(event.at("finger"))].push_back({event["from"], event.at("value")});
   }

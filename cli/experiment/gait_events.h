@@ -27,6 +27,8 @@ class GaitEvents {
     double gain_sum = 0;  ///< of all explored: relative rise from begin to end of exploring
   };
   Counts Count() const;
+  /// When the gait failed: drops, and regrasps broken off, ascending [s].
+  const std::vector<double>& failures_s() const { return failures_s_; }
 
  private:
   struct Exploration {
@@ -34,6 +36,7 @@ class GaitEvents {
   };
   SteppedDaemon& daemon_;
   std::int64_t last_tick_ = -1;
+  std::vector<double> failures_s_;
   int slips_ = 0, refusals_ = 0;
   std::map<std::string, std::vector<Exploration>> explorations_;  // per finger
 };

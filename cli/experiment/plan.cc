@@ -16,6 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kHazardPush = 1;  // [N]
+
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
@@ -267,17 +269,36 @@ void ExpandZoo(Plan* plan) {
     }
 }
 
+void ExpandHazards(Plan* plan) {
+  for (const std::string& object : plan->objects)
+    for (const char* hazard : {"as it is", "pushed", "slippery"}) {
+      Case c;
+      c.name = fmt::format("{}, {}", object, hazard);
+      c.setting.object = object;
+      if (hazard == std::string("pushed")) c.setting.push_n = kHazardPush;
+      if (hazard == std::string("slippery")) c.setting.set = {{"object.friction", "0.5"}};
+      plan->cases.push_back(std::move(c));
+    }
+}
+
 Plan PlanFromArguments(const std::string& experiment, const Invocation& invocation) {
   Plan p;
   p.experiment = experiment;
   const bool sweep = experiment == "noise-sweep";
   const auto presets = ValuesOf("noise.set", "preset");
-  p.noise =
-      Names(invocation.Text("noise", sweep ? fmt::format("{}", fmt::join(presets, ",")) : "paper"),
-            presets, "--noise");
+  const bool zoo = experiment == "zoo", prediction = experiment == "prediction";
+  p.noise = Names(invocation.Text("noise", sweep        ? fmt::format("{}", fmt::join(presets, ","))
+                                           : prediction ? "paper,coarse"
+                                                        : "paper"),
+                  presets, "--noise");
   p.first_seed = Integer(invocation, "seed", "1");
-  const bool zoo = experiment == "zoo";
-  p.seeds = Integer(invocation, "seeds", zoo ? "5" : p.rotation() ? "10" : sweep ? "20" : "50");
+  p.seeds = Integer(invocation, "seeds",
+                    prediction     ? "2"
+                    : zoo          ? "5"
+                    : p.rotation() ? "10"
+                    : sweep        ? "20"
+                                   : "50");
+  if (prediction) p.objects = Split(invocation.Text("objects", kPredictionObjects), ',');
   if (zoo) {
     p.objects = Split(invocation.Text("objects", "zoo"), ',');
     p.gaits = Names(invocation.Text("gaits", "planned,returning"),

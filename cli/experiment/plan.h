@@ -26,23 +26,24 @@ struct Unit {
 /// What running a unit gave.
 struct UnitResult {
   std::vector<Json> rows;  ///< members are the columns of trials.csv
-  Json map;                ///< explorations: PhiMap::samples; else null
+  Json map;                ///< explorations: PhiMap::samples; prediction: a WatchedRun; else null
   bool operator==(const UnitResult&) const = default;
 };
 
 struct Plan {
-  std::string experiment;        ///< "exploration", "noise-sweep", "rotation", "zoo"
+  std::string experiment;        ///< "exploration", "noise-sweep", "rotation", "zoo", "prediction"
   std::string hand, models_dir;  ///< empty: the daemon's own
   Setting common;                ///< of every trial
   std::vector<Case> cases;       ///< settings to compare; empty: `common` alone
   std::vector<std::string> noise, subjects;
   std::int64_t first_seed = 1, seeds = 0;
-  std::vector<std::string> estimators;      ///< explorations
-  std::string criterion;                    ///< explorations
-  int rays = 0;                             ///< explorations: of the map of phi; 0: no map
-  double turns = 0, speed_deg_s = 0;        ///< rotations; speed 0: the parameter's
-  std::vector<std::string> objects, gaits;  ///< zoo, until they are cases; objects "zoo": all of it
-  std::string stepper = "fast";             ///< fast or exact
+  std::vector<std::string> estimators;  ///< explorations
+  std::string criterion;                ///< explorations
+  int rays = 0;                         ///< explorations: of the map of phi; 0: no map
+  double turns = 0, speed_deg_s = 0;    ///< rotations; speed 0: the parameter's
+  /// Zoo and prediction, until they are cases; objects "zoo": all of it.
+  std::vector<std::string> objects, gaits;
+  std::string stepper = "fast";  ///< fast or exact
   // Of the daemon, filled in by CompletePlan():
   std::string version, build;  ///< build: over the bytes of the program
   std::string built_from;      ///< commit, compiler, flags
@@ -50,7 +51,9 @@ struct Plan {
   Json parameters;  ///< {NAME: value} where they differ from the defaults; likewise
   int shard = 1, shards = 1;  ///< this part, 1 ... shards, takes every shards-th unit
 
-  bool rotation() const { return experiment == "rotation" || experiment == "zoo"; }
+  bool rotation() const {
+    return experiment == "rotation" || experiment == "zoo" || experiment == "prediction";
+  }
   std::size_t num_units() const;
   Unit unit(std::size_t index) const;
   /// The place among the units of this plan of one that has place `index` in the same plan with
@@ -89,9 +92,17 @@ void ExpandSweeps(Plan* plan, const std::function<bool(const std::string& parame
 /// Makes the cases of a zoo: every object with every gait, each gait compared with the first.
 void ExpandZoo(Plan* plan);
 
-/// The plan that the arguments of `experiment exploration|noise-sweep|rotation|zoo` ask for;
-/// fingers ("all") and the zoo's objects are still to be named, sweeps to be expanded, version and
-/// build to be filled in. Throws CliError(kUsage).
+/// What a prediction looks at unless told: bodies of all kinds.
+inline constexpr const char* kPredictionObjects =
+    "sphere,egg,cube_40mm,zoo_box_flat,zoo_cylinder_lying,zoo_ellipsoid_lying,zoo_peanut_upright,"
+    "zoo_pear,zoo_pillow,zoo_square,zoo_superquadric_02,zoo_triangle";
+
+/// Makes the cases of a prediction: every object as it is, pushed, and slippery.
+void ExpandHazards(Plan* plan);
+
+/// The plan that the arguments of `experiment exploration|noise-sweep|rotation|zoo|prediction` ask
+/// for; fingers ("all") and the zoo's objects are still to be named, sweeps to be expanded, version
+/// and build to be filled in. Throws CliError(kUsage).
 Plan PlanFromArguments(const std::string& experiment, const Invocation& invocation);
 
 }  // namespace regrasp::cli

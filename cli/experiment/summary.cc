@@ -8,6 +8,7 @@
 #include "cli/client/program.h"
 #include "cli/experiment/comparison.h"
 #include "cli/experiment/paired.h"
+#include "cli/experiment/prediction.h"
 #include "cli/experiment/statistics.h"
 
 namespace regrasp::cli {
@@ -116,7 +117,7 @@ std::string MapsCsv(const Trials& trials) {
   CsvTable table;
   std::string text;
   for (const auto& [unit, result] : trials)
-    for (const Json& sample : result.map) {
+    for (const Json& sample : result.map.is_array() ? result.map : Json::array()) {
       Json row;
       for (const char* key : {"case", "finger", "criterion", "noise", "object", "seed"})
         if (result.rows.front().contains(key)) row[key] = result.rows.front().at(key);
@@ -162,7 +163,9 @@ Json Summary(const Plan& plan, const Trials& trials) {
   if (plan.cases.empty()) add_case(Json::object());
   for (const Case& c : plan.cases) add_case({{"case", c.name}});
   Json summary = {{"experiment", ToJson(plan)}, {"trials", n}, {"groups", groups}};
-  if (Json comparisons = Comparisons(plan, trials); !comparisons.empty())
+  if (plan.experiment == "prediction")
+    summary["prediction"] = PredictionSummary(trials);
+  else if (Json comparisons = Comparisons(plan, trials); !comparisons.empty())
     summary["comparisons"] = std::move(comparisons);
   return summary;
 }

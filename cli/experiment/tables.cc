@@ -203,6 +203,24 @@ TableData ComparisonTable(const Json& summary) {
   return table;
 }
 
+TableData PredictionTable(const Json& summary) {
+  TableData table;
+  table.titles = {
+      "measure",           "form", ">AUC (95 %)", ">behind the best (95 %)", ">windows foretold %",
+      ">failures foretold"};
+  for (const Json& p : summary.at("prediction").at("predictors"))
+    table.rows.push_back(
+        {Plain(p.at("title")), Plain(p.at("form")),
+         fmt::format("{:.3f} ({:.3f}–{:.3f})", p.at("auc").get<double>(), p.at("low").get<double>(),
+                     p.at("high").get<double>()),
+         fmt::format("{:.3f} ({:.3f} to {:.3f})", p.at("behind").get<double>(),
+                     p.at("behind_low").get<double>(), p.at("behind_high").get<double>()),
+         Fixed(p.at("foretold"), 0, 100),
+         fmt::format("{}/{}", Plain(p.at("failures_foretold")),
+                     Plain(p.at("failures_with_windows")))});
+  return table;
+}
+
 TableData SampleSizeTable(const Json& summary, double precision) {
   const Json& groups = summary.at("groups");
   const auto keys = Present(groups, {"case", "noise", "axis_W", "estimator", "finger"});

@@ -28,6 +28,9 @@ std::string Render(const Output& out, const TableData& table, TableFormat format
 TableData GroupTable(const Json& summary);
 /// One row per comparison and measure: both means, difference with its 95 % interval, p, Holm's p.
 TableData ComparisonTable(const Json& summary);
+/// One row per predictor of a prediction: area under the ROC with its interval, how far behind the
+/// best, and the share foretold with false alarms in 10 % of the windows that hold.
+TableData PredictionTable(const Json& summary);
 /// How many seeds each figure needs for an interval of +-`precision`: of shares and their
 /// differences absolute, of all else relative to the figure.
 TableData SampleSizeTable(const Json& summary, double precision);

@@ -7,6 +7,7 @@
 #include "cli/client/errors.h"
 #include "cli/experiment/gait_events.h"
 #include "cli/experiment/phi_map.h"
+#include "cli/experiment/prediction.h"
 #include "cli/print/print.h"
 #include "core/common/random.h"
 #include "core/session/completed.h"
@@ -15,7 +16,8 @@ namespace regrasp::cli {
 namespace {
 
 constexpr std::int64_t kExploreChunk = 250, kExploreLimit = 60000;  // [ticks]
-constexpr std::int64_t kRotateChunk = 1000;
+constexpr std::int64_t kRotateChunk = 1000, kLookChunk = 100;
+constexpr std::int64_t kLongestWatched = 300000;  // of a turn that is looked at
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
 constexpr std::int64_t kHoldTicks = 1000;
 constexpr double kPush_s = 0.1;
@@ -120,7 +122,14 @@ void Push(SteppedDaemon* daemon, const Eigen::Vector3d& force_W) {
                {{"force_n", {force_W.x(), force_W.y(), force_W.z()}}, {"duration_s", kPush_s}});
 }
 
-Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
+void AddLook(SteppedDaemon* daemon, WatchedRun* run) {
+  const Json quality = daemon->Call("quality");
+  run->time_s.push_back(quality.at("time_s"));
+  run->values.push_back(Look(quality, daemon->Call("contacts")));
+}
+
+/// `watched`: takes looks at the gait, 10 a second; may be null.
+Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit, WatchedRun* watched) {
   daemon->LeaveFault();
   daemon->Call("noise.set", {{"preset", unit.noise}});
   const Json grasp = daemon->Grasp(unit.seed);
@@ -141,14 +150,24 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
   if (Done(grasp)) {
     Json params = {{"turns", turns_wanted}, {"axis", ParseNumbers(unit.subject, 3, "--axis")}};
     if (plan.speed_deg_s > 0) params["speed_rad_s"] = plan.speed_deg_s * std::numbers::pi / 180;
+    const std::int64_t chunk = watched != nullptr ? kLookChunk : kRotateChunk;
+    const std::int64_t per_turn = watched != nullptr ? kLongestWatched : kRotateLimitPerTurn;
+    std::int64_t ticks = 0;
     record = daemon->Run(
-        "rotate", params, kRotateChunk,
-        kRotateLimit + static_cast<std::int64_t>(std::abs(turns_wanted) * kRotateLimitPerTurn),
-        [&] {
+        "rotate", params, chunk,
+        kRotateLimit + static_cast<std::int64_t>(std::abs(turns_wanted) * per_turn), [&] {
+          ticks += chunk;
+          const bool rotating = At(daemon->Call("status"), "state") == "rotating";
+          if (watched != nullptr && rotating) AddLook(daemon, watched);
+          if (ticks % kRotateChunk != 0) return;
           events.Read();
-          if (push_n > 0 && At(daemon->Call("status"), "state") == "rotating")
-            Push(daemon, push_n * pushes.Normal3().normalized());
+          if (push_n > 0 && rotating) Push(daemon, push_n * pushes.Normal3().normalized());
         });
+    events.Read();
+    if (watched != nullptr && !watched->time_s.empty()) {
+      watched->failures_s = events.failures_s();
+      watched->end_s = watched->time_s.back();
+    }
     status = daemon->Call("status");
     row["outcome"] = Outcome(record, Plain(At(status, "state")));
     row["error"] = At(record, "error");
@@ -189,8 +208,14 @@ void Prepare(SteppedDaemon* daemon, const Plan& plan, std::size_t which) {
 }
 
 UnitResult RunUnit(SteppedDaemon* daemon, const Plan& plan, const Unit& unit) {
-  if (plan.rotation()) return {{Rotate(daemon, plan, unit)}, nullptr};
   UnitResult result;
+  if (plan.experiment == "prediction") {
+    WatchedRun run;
+    result.rows = {Rotate(daemon, plan, unit, &run)};
+    result.map = ToJson(run);
+    return result;
+  }
+  if (plan.rotation()) return {{Rotate(daemon, plan, unit, nullptr)}, nullptr};
   std::optional<PhiMap> map;
   if (plan.rays > 0) {
     map = MapPhi(daemon, unit.noise, unit.seed, unit.subject, plan.CriterionOf(unit.which),

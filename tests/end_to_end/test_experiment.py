@@ -244,6 +244,24 @@ class Pairs(ExperimentCase):
                          [(None, "egg, planned", "egg, returning", 1), (None, "sphere, planned", "sphere, returning", 1), ("all", "planned", "returning", 2)])
         self.assertIn("'unicorn' is none of", self.refused_experiment(2, "zoo", "--objects", "unicorn", "-o", self.dir / "none"))
 
+    def test_a_prediction_looks_at_gaits_in_danger(self):
+        words = ["prediction", "--objects", "sphere", "--noise", "coarse", "-n", "1", "--turns", "0.1", "--models-dir", SOURCE / "models"]
+        self.run_experiment(*words, "-o", self.dir / "foretold")
+        self.assertEqual([row["case"] for row in self.rows("foretold")], ["sphere, as it is", "sphere, pushed", "sphere, slippery"])
+        self.assertNotIn("comparisons", self.summary("foretold"))
+        prediction = self.summary("foretold")["prediction"]
+        self.assertEqual(prediction["runs"], 3)
+        self.assertGreater(prediction["looks"], 30)
+        self.assertGreater(prediction["windows_holding"], 0)
+        for predictor in prediction["predictors"]:
+            self.assertLessEqual(0, predictor["low"])
+            self.assertLessEqual(predictor["low"], predictor["high"])
+        # What the run gave does not depend on being looked at.
+        words = shlex.split(self.rows("foretold")[0]["command"])
+        words[words.index("-o") + 1] = self.dir / "single"
+        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.assertEqual(self.rows("single")[0]["state_hash"], self.rows("foretold")[0]["state_hash"])
+
 
 class Cases(ExperimentCase):
     TURN = ["rotation", "--angle", "15", "-n", "1", "--models-dir", SOURCE / "models"]
