@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
   try {
     std::ifstream file(argv[1]);
     const auto summary = nlohmann::ordered_json::parse(file);
-    if (summary.contains("prediction")) {
+    if (summary.contains("prediction") && !summary["prediction"]["predictors"].empty()) {
       regrasp::PlotPrediction(regrasp::PredictionOf(summary), argv[2]);
       return 0;
     }

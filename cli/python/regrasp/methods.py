@@ -61,7 +61,7 @@ class Methods:
     def explore(self, finger: str, criterion: str | None = None, estimator: str | None = None, seed: int | None = None, max_cycles: int | None = None) -> Job:
         """Improve the grasp by sliding one finger over the surface.
         finger: the finger that explores; one of first, middle, ring, little, thumb.
-        criterion: what it maximises; one of manipulability, stability, switched, combined; left out:
+        criterion: what it maximises; one of manipulability, stability, switched, combined, reserve; left out:
             manipulability.
         estimator: how it estimates the gradient; secant is the rule as printed; one of least_squares, secant; left
             out: least_squares.

@@ -136,7 +136,7 @@ TEST(Roc, EveryRunIsDrawnAsOftenAsAnother) {
 }
 
 /// Looks each 0.1 s from 0 to 10 s, each measure a line of time.
-WatchedRun Run(std::vector<double> failures_s) {
+WatchedRun RunWith(std::vector<double> failures_s) {
   WatchedRun run;
   for (int k = 0; k <= 100; ++k) {
     run.time_s.push_back(0.1 * k);
@@ -155,7 +155,7 @@ std::string LabelText(const std::vector<Label>& labels, std::size_t from, std::s
 }
 
 TEST(Prediction, WindowsAreBeforeAFailureOrFarFromOne) {
-  const auto labels = LabelsOf(Run({5.05}));
+  const auto labels = LabelsOf(RunWith({5.05}));
   EXPECT_EQ(LabelText(labels, 0, 6), "-----hh");           // half a second of history first
   EXPECT_EQ(LabelText(labels, 38, 50), "hhhFFFFFFFF--");   // 4.1 to 4.8 s are 0.95 to 0.25 s ahead
   EXPECT_EQ(LabelText(labels, 51, 63), "----------hhh");   // a second of recovery
@@ -163,14 +163,14 @@ TEST(Prediction, WindowsAreBeforeAFailureOrFarFromOne) {
 }
 
 TEST(Prediction, AFailureThatFollowsAnotherHasNoWindowsOfItsOwn) {
-  const auto labels = LabelsOf(Run({5.05, 5.55}));
+  const auto labels = LabelsOf(RunWith({5.05, 5.55}));
   EXPECT_EQ(LabelText(labels, 38, 70),
             "hhhFFFFFFFF-----------------"
             "hhhhh");
 }
 
 TEST(Prediction, ScoresAreTheValueTheWorstAndTheTrend) {
-  const WatchedRun run = Run({});
+  const WatchedRun run = RunWith({});
   for (std::size_t m = 0; m < WatchedMeasures().size(); ++m) {
     const double danger = WatchedMeasures()[m].danger;
     EXPECT_NEAR(Score(run, 50, m, Form::kNow), danger * 2, 1e-12);
@@ -181,7 +181,7 @@ TEST(Prediction, ScoresAreTheValueTheWorstAndTheTrend) {
 }
 
 TEST(Prediction, ARunComesBackFromItsText) {
-  const WatchedRun run = Run({1.25});
+  const WatchedRun run = RunWith({1.25});
   const WatchedRun back = WatchedRunFromJson(Json::parse(ToJson(run).dump()));
   EXPECT_EQ(back.time_s, run.time_s);
   EXPECT_EQ(back.values, run.values);
@@ -194,7 +194,7 @@ TEST(Prediction, FindsTheMeasureThatFalls) {
   Trials trials;
   RandomStream random(9, 1);
   for (std::size_t r = 0; r < 20; ++r) {
-    WatchedRun run = Run({3.05, 7.05});
+    WatchedRun run = RunWith({3.05, 7.05});
     for (std::size_t i = 0; i < run.time_s.size(); ++i)
       for (std::size_t m = 0; m < run.values[i].size(); ++m) {
         run.values[i][m] = random.Normal3().x();
