@@ -375,11 +375,12 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   if (o.rows || job.state != JobState::kDone)
     std::fprintf(stderr,
                  "  seed %llu %s %.1f deg in %.1f s  offset %.2f mm  tilt %.1f deg  regrasps %d  "
-                 "slips %.0f  "
+                 "motions %d  slips %.0f  "
                  "refused %.0f  link-link %.1f %%  %s\n",
                  static_cast<unsigned long long>(seed), Name(job.state).data(), angle, r.sim_time_s,
-                 r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps, slips,
-                 refused, r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
+                 r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps,
+                 r.gait_cycles + 1, slips, refused,
+                 r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
   const bool completed =
       job.state == JobState::kDone && TurnedAsAsked(r.angle_rad, 2 * M_PI * o.turns);
   return {completed ? 1.0 : 0.0,
