@@ -241,8 +241,8 @@ class Memory(SystemCase):
         self.addCleanup(countdown.close)
         log = open(self.dir / "log", "w+b")
         self.addCleanup(log.close)
-        self.start("--clock", "lockstep", "--speed", "max", stderr=log, LD_PRELOAD=preload("no_memory"),
-                   NO_MEMORY=str(self.dir / "countdown")).close()
+        other = self.start("--clock", "lockstep", "--speed", "max", stderr=log, LD_PRELOAD=preload("no_memory"),
+                           NO_MEMORY=str(self.dir / "countdown"))
         for method, params in self.REQUESTS:
             for number in (1, 3, 9, 40, 200, 1000):
                 # A new client each time: who is accepted, asks and leaves while memory is short.
@@ -254,6 +254,8 @@ class Memory(SystemCase):
                 self.assertIsNone(self.daemon.poll(), f"{method}, allocation {number}: the daemon has ended")
                 self.assertIsNotNone(answer, f"{method}, allocation {number}: the connection was given up")
                 self.assertNotIn("bad_alloc", json.dumps(answer))
+                other.result("version")  # the reserve is taken again with the next request
+        other.close()
         wire = Wire(self.socket)
         while wire.result("status")["clients"] != 1:
             pass
