@@ -69,27 +69,25 @@ inline FingerLook LookOfFinger(int finger) {
 
 /// Band colour of a state of the session: pale, for backgrounds.
 inline Colour StateColour(SessionState state) {
+  // In the order of the table of jobs; the last are for jobs to come.
+  static const std::array<Colour, 8> kJobColours = {
+      Tint(kYellow, 0.62), Colour{225, 225, 225}, Tint(kOrange, 0.68), Tint(kGreen, 0.74),
+      Tint(kPurple, 0.74), Tint(kBlue, 0.72),     Tint(kInk, 0.72),    Tint(kOrange, 0.4)};
+  static_assert(kJobTable.size() <= 8);
+  if (const JobInfo* job = FindJob(&JobInfo::state, state))
+    return kJobColours[static_cast<std::size_t>(job->id)];
   switch (state) {
     case SessionState::kIdle:
       return {240, 240, 240};
-    case SessionState::kGrasping:
-      return Tint(kYellow, 0.62);
     case SessionState::kHolding:
       return Tint(kSkyBlue, 0.72);
-    case SessionState::kExploring:
-      return Tint(kOrange, 0.68);
-    case SessionState::kRotating:
-      return Tint(kGreen, 0.74);
-    case SessionState::kMoving:
-      return Tint(kPurple, 0.74);
     case SessionState::kDropped:
       return Tint(kVermillion, 0.45);
     case SessionState::kFaulted:
       return Tint(kInk, 0.35);
-    case SessionState::kReleasing:
-      return {225, 225, 225};
+    default:
+      return kWhite;
   }
-  return kWhite;
 }
 
 }  // namespace regrasp

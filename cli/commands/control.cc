@@ -146,6 +146,20 @@ ExitCode Push(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
+/// A job starts as its row says, but for what is said here.
+CommandSpec JobCommand(const MethodSpec& method) {
+  if (method.name == "rotate") return MethodCommand(method.name, kGroup, Rotate);
+  if (method.name == "explore")
+    return MethodCommand(method.name, kGroup, StartJob, {.positional = {"finger"}});
+  if (method.name != "move") return MethodCommand(method.name, kGroup, StartJob);
+  CommandSpec move = MethodCommand(method.name, kGroup, Move);
+  move.args[0].flags = "--by";
+  move.args[0].help = "shift of the object's centre along the axes of W, in mm, at most 50 long";
+  move.args[1].flags = "--turn";
+  move.args[1].help = "turn, a rotation vector in W, in degrees, at most 180 long";
+  return move;
+}
+
 }  // namespace
 
 std::vector<CommandSpec> ControlCommands() {
@@ -158,34 +172,27 @@ std::vector<CommandSpec> ControlCommands() {
   preset.sentence = "set all noise levels to a preset";
   preset.args.front().required = true;
   CommandSpec noise_off{"noise off", kGroup, "switch all noise off", nullptr, {}, NoiseOff};
-  CommandSpec move = MethodCommand("move", kGroup, Move);
-  move.args[0].flags = "--by";
-  move.args[0].help = "shift of the object's centre along the axes of W, in mm, at most 50 long";
-  move.args[1].flags = "--turn";
-  move.args[1].help = "turn, a rotation vector in W, in degrees, at most 180 long";
-  std::vector<CommandSpec> commands = {
-      MethodCommand("grasp", kGroup, StartJob),
-      MethodCommand("release", kGroup, StartJob),
-      MethodCommand("rotate", kGroup, Rotate),
-      move,
-      MethodCommand("explore", kGroup, StartJob, {.positional = {"finger"}}),
-      MethodCommand("stop", kGroup, Stop),
-      MethodCommand("pause", kGroup, PauseOrResume),
-      MethodCommand("resume", kGroup, PauseOrResume),
-      MethodCommand("step", kGroup, StartJob, {.positional = {"ticks"}}),
-      MethodCommand("reset", kGroup, Reset),
-      MethodCommand("noise.get", kGroup, NoiseShow),
-      MethodCommand("noise.set", kGroup, NoiseSet,
-                    {.hidden = {"preset", "object_position_m", "object_rotation_rad"},
-                     .extra = {{.key = "pose",
-                                .flags = "--pose",
-                                .metavar = "MM,DEG",
-                                .help = "object position and orientation, per axis",
-                                .default_text = "unchanged"}}}),
-      preset,
-      noise_off,
-      MethodCommand("push", kGroup, Push),
-  };
+  std::vector<CommandSpec> commands;
+  for (const MethodSpec& method : JobMethods()) commands.push_back(JobCommand(method));
+  for (CommandSpec& command : std::vector<CommandSpec>{
+           MethodCommand("stop", kGroup, Stop),
+           MethodCommand("pause", kGroup, PauseOrResume),
+           MethodCommand("resume", kGroup, PauseOrResume),
+           MethodCommand("step", kGroup, StartJob, {.positional = {"ticks"}}),
+           MethodCommand("reset", kGroup, Reset),
+           MethodCommand("noise.get", kGroup, NoiseShow),
+           MethodCommand("noise.set", kGroup, NoiseSet,
+                         {.hidden = {"preset", "object_position_m", "object_rotation_rad"},
+                         .extra = {{.key = "pose",
+                                  .flags = "--pose",
+                                  .metavar = "MM,DEG",
+                                  .help = "object position and orientation, per axis",
+                                  .default_text = "unchanged"}}}),
+           preset,
+           noise_off,
+           MethodCommand("push", kGroup, Push),
+       })
+    commands.push_back(std::move(command));
   for (CommandSpec& command : ParameterCommands()) commands.push_back(std::move(command));
   return commands;
 }

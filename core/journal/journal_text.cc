@@ -1,5 +1,6 @@
 #include "core/journal/journal_text.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -24,13 +25,8 @@ struct MethodName {
   CommandType type;
   std::string_view name;
 };
-// As on the wire; a branch is what a restored checkpoint begins with.
-constexpr std::array kMethods = {
-    MethodName{CommandType::kGrasp, "grasp"},
-    MethodName{CommandType::kRelease, "release"},
-    MethodName{CommandType::kExplore, "explore"},
-    MethodName{CommandType::kRotate, "rotate"},
-    MethodName{CommandType::kMove, "move"},
+// As on the wire, besides the jobs; a branch is what a restored checkpoint begins with.
+constexpr std::array kOtherMethods = {
     MethodName{CommandType::kStop, "stop"},
     MethodName{CommandType::kNoise, "noise.set"},
     MethodName{CommandType::kPush, "push"},
@@ -39,17 +35,22 @@ constexpr std::array kMethods = {
     MethodName{CommandType::kBranch, "branch"},
 };
 
+constexpr auto kMethods = [] {
+  std::array<MethodName, kJobTable.size() + kOtherMethods.size()> methods{};
+  auto end = std::ranges::transform(kJobTable, methods.begin(), [](const JobInfo& job) {
+               return MethodName{job.command, job.name};
+             }).out;
+  std::ranges::copy(kOtherMethods, end);
+  return methods;
+}();
+
 /// What each command carries. `finger` and `parameter` go by name.
 template <typename A>
 void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter) {
+  const bool about_job = c.type == CommandType::kCancelJob || c.type == CommandType::kBranch;
+  if (about_job || JobMethodOf(c.type)) a("job", c.job);
   switch (c.type) {
-    case CommandType::kGrasp:
-    case CommandType::kRelease:
-    case CommandType::kCancelJob:
-      a("job", c.job);
-      break;
     case CommandType::kExplore:
-      a("job", c.job);
       a("finger", finger);
       a("criterion", c.criterion);
       a("estimator", c.estimator);
@@ -57,14 +58,12 @@ void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter
       a("max_cycles", c.max_cycles);
       break;
     case CommandType::kRotate:
-      a("job", c.job);
       a("continuous", c.continuous);
       a("angle_rad", c.angle_rad);
       a("axis_W", c.axis_W);
       a("speed_rad_s", c.speed_rad_s);
       break;
     case CommandType::kMove:
-      a("job", c.job);
       a("offset_m", c.offset_W);
       a("rotation_rad", c.rotation_W);
       break;
@@ -80,12 +79,11 @@ void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter
       a("value", c.value);
       break;
     case CommandType::kBranch:
-      a("job", c.job);
       a("reseed", c.reseed);
       a("seed", c.seed);
       break;
-    case CommandType::kStop:
-      break;
+    default:
+      break;  // nothing more
   }
 }
 

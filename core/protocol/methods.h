@@ -68,6 +68,9 @@ struct MethodSpec {
 /// Every method, sorted by name.
 std::span<const MethodSpec> MethodTable();
 
+/// Those that start a job of the hand, in the order in which help lists them.
+std::span<const MethodSpec> JobMethods();
+
 /// The method with this wire name, or null.
 const MethodSpec* FindMethod(std::string_view name);
 

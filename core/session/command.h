@@ -9,29 +9,15 @@
 #include "core/exploration/gradient_estimator.h"
 #include "core/exploration/objective.h"
 #include "core/sensing/noise.h"
+#include "core/session/job_table.h"
 
 namespace regrasp {
 
-enum class CommandType : std::uint8_t {
-  kGrasp,
-  kRelease,
-  kExplore,
-  kRotate,
-  kMove,
-  kStop,
-  kNoise,
-  kPush,
-  kParameter,
-  kCancelJob,
-  kBranch,
-};
-
 struct Command {
   CommandType type = CommandType::kStop;
-  std::int64_t job =
-      0;  ///< id of the new job (grasp, release, explore, rotate, move), chosen by
-          ///< the caller; or the job to cancel; branch: new id of the running job, 0 = keep
-  int finger = -1;  ///< explore
+  std::int64_t job = 0;  ///< id of the new job, chosen by the caller; or the job to cancel; branch:
+                         ///< new id of the running job, 0 = keep
+  int finger = -1;       ///< explore
   Criterion criterion = Criterion::kManipulability;
   Estimator estimator = Estimator::kLeastSquares;
   std::uint64_t seed = 0;                  ///< explore: direction of the start gradient; branch

@@ -6,62 +6,31 @@
 namespace regrasp {
 namespace {
 
-/// In which the job runs.
-SessionState StateOf(JobMethod method) {
-  switch (method) {
-    case JobMethod::kGrasp:
-      return SessionState::kGrasping;
-    case JobMethod::kRelease:
-      return SessionState::kReleasing;
-    case JobMethod::kExplore:
-      return SessionState::kExploring;
-    case JobMethod::kRotate:
-      return SessionState::kRotating;
-    default:
-      return SessionState::kMoving;
-  }
+/// Whether a job may start now.
+Verdict CheckStart(const JobInfo& job, SessionState state, bool job_running) {
+  using Kind = Verdict::Kind;
+  if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
+  if (state == job.from) return {};
+  if (job.from == SessionState::kIdle && state == SessionState::kHolding)
+    return {Kind::kBadState, "the hand already holds the object", "regrasp release"};
+  if (job.from == SessionState::kIdle)
+    return {Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+  const bool lost = state == SessionState::kDropped || state == SessionState::kFaulted;
+  return {Kind::kBadState, "the hand does not hold the object",
+          lost ? "regrasp reset" : "regrasp grasp"};
 }
 
 }  // namespace
 
 Verdict Check(CommandType type, SessionState state, bool job_running) {
   using Kind = Verdict::Kind;
-  const bool faulted = state == SessionState::kFaulted;
-  switch (type) {
-    case CommandType::kStop:
-    case CommandType::kCancelJob:
-    case CommandType::kNoise:
-    case CommandType::kParameter:
-    case CommandType::kBranch:
-      if (faulted) return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
-      return {};
-    case CommandType::kPush:
-      if (faulted) return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
-      if (state == SessionState::kDropped || state == SessionState::kIdle)
-        return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
-      return {};
-    case CommandType::kGrasp:
-      if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
-      if (state == SessionState::kHolding)
-        return {Kind::kBadState, "the hand already holds the object", "regrasp release"};
-      if (state != SessionState::kIdle)
-        return {Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
-      return {};
-    case CommandType::kRelease:
-      if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
-      if (state != SessionState::kHolding)
-        return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
-      return {};
-    case CommandType::kExplore:
-    case CommandType::kRotate:
-    case CommandType::kMove:
-      if (job_running) return {Kind::kBusy, "another job is running", "regrasp stop"};
-      if (state == SessionState::kDropped || faulted)
-        return {Kind::kBadState, "the hand does not hold the object", "regrasp reset"};
-      if (state != SessionState::kHolding)
-        return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
-      return {};
-  }
+  if (const JobInfo* job = FindJob(&JobInfo::command, type))
+    return CheckStart(*job, state, job_running);
+  if (state == SessionState::kFaulted)
+    return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
+  if (type == CommandType::kPush &&
+      (state == SessionState::kDropped || state == SessionState::kIdle))
+    return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
   return {};
 }
 
@@ -133,7 +102,7 @@ Verdict Session::Impl::Refuse(const Command& command, const Verdict& verdict) {
 }
 
 Verdict Session::Impl::StartActivity(const Command& command, JobMethod method) {
-  const SessionState next = StateOf(method);
+  const SessionState next = FindJob(&JobInfo::id, method)->state;
   Activity& activity = *Running(next);
   const ActivityContext context = Context();
   if (const Verdict refusal = activity.MayStart(command, context);

@@ -15,17 +15,6 @@
 
 namespace regrasp {
 
-enum class SessionState : std::uint8_t {
-  kIdle,
-  kGrasping,
-  kHolding,
-  kExploring,
-  kRotating,
-  kMoving,
-  kDropped,
-  kFaulted,
-  kReleasing
-};
 enum class FingerRole : std::uint8_t { kFree, kHold, kExplore, kMove };
 
 std::string_view Name(SessionState state);  ///< "idle", ...

@@ -3,7 +3,6 @@
 /// Records of long-running work. Plain data of fixed size, so that they travel in frames.
 
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 #include "core/common/fields.h"
@@ -11,7 +10,6 @@
 
 namespace regrasp {
 
-enum class JobMethod : std::uint8_t { kGrasp, kRelease, kExplore, kRotate, kMove, kStep, kRestore };
 enum class JobState : std::uint8_t { kQueued, kRunning, kDone, kFailed, kCancelled };
 /// Why an exploration ended.
 enum class ExploreReason : std::uint8_t {
@@ -37,8 +35,6 @@ enum class MoveEnd : std::uint8_t {
   kDropped,
 };
 
-/// The job that a command starts, or nothing for a command that starts none.
-std::optional<JobMethod> JobMethodOf(CommandType type);
 std::string_view Name(JobMethod method);      ///< "grasp", ...
 std::string_view Name(JobState state);        ///< "queued", ...
 std::string_view Name(ExploreReason reason);  ///< "gradient", "max_cycles", ...; "" for kNone
@@ -170,6 +166,13 @@ struct JobRecord {
     v("explore", explore);
     v("rotate", rotate);
     v("move", move);
+  }
+  /// What the record of a job of this method has besides: what the answer of `job.get` shows.
+  template <typename V>
+  void ResultFields(V& v) {
+    if (method == JobMethod::kExplore) explore.Fields(v);
+    if (method == JobMethod::kRotate) rotate.Fields(v);
+    if (method == JobMethod::kMove) move.Fields(v);
   }
 };
 

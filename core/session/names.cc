@@ -3,41 +3,11 @@
 
 namespace regrasp {
 
-std::optional<JobMethod> JobMethodOf(CommandType type) {
-  switch (type) {
-    case CommandType::kGrasp:
-      return JobMethod::kGrasp;
-    case CommandType::kRelease:
-      return JobMethod::kRelease;
-    case CommandType::kExplore:
-      return JobMethod::kExplore;
-    case CommandType::kRotate:
-      return JobMethod::kRotate;
-    case CommandType::kMove:
-      return JobMethod::kMove;
-    default:
-      return {};
-  }
-}
-
 std::string_view Name(JobMethod method) {
-  switch (method) {
-    case JobMethod::kGrasp:
-      return "grasp";
-    case JobMethod::kRelease:
-      return "release";
-    case JobMethod::kExplore:
-      return "explore";
-    case JobMethod::kRotate:
-      return "rotate";
-    case JobMethod::kMove:
-      return "move";
-    case JobMethod::kStep:
-      return "step";
-    case JobMethod::kRestore:
-      return "checkpoint.restore";
-  }
-  return "";
+  if (method == JobMethod::kStep) return "step";
+  if (method == JobMethod::kRestore) return "checkpoint.restore";
+  const JobInfo* row = FindJob(&JobInfo::id, method);
+  return row ? row->name : "";
 }
 
 std::string_view Name(JobState state) {
@@ -101,44 +71,24 @@ std::string_view Name(MoveEnd end) {
 }
 
 std::string_view Name(SessionState state) {
+  if (const JobInfo* row = FindJob(&JobInfo::state, state)) return row->state_name;
   switch (state) {
     case SessionState::kIdle:
       return "idle";
-    case SessionState::kGrasping:
-      return "grasping";
     case SessionState::kHolding:
       return "holding";
-    case SessionState::kExploring:
-      return "exploring";
-    case SessionState::kRotating:
-      return "rotating";
-    case SessionState::kMoving:
-      return "moving";
     case SessionState::kDropped:
       return "dropped";
     case SessionState::kFaulted:
       return "faulted";
-    case SessionState::kReleasing:
-      return "releasing";
+    default:
+      return "";
   }
-  return "";
 }
 
 bool HoldsAlone(SessionState state, bool stand_in) {
-  switch (state) {
-    case SessionState::kGrasping:
-    case SessionState::kHolding:
-    case SessionState::kExploring:
-    case SessionState::kRotating:
-    case SessionState::kMoving:
-      return !stand_in;
-    case SessionState::kIdle:
-    case SessionState::kReleasing:
-    case SessionState::kDropped:
-    case SessionState::kFaulted:
-      return false;
-  }
-  return false;
+  const JobInfo* row = FindJob(&JobInfo::state, state);
+  return !stand_in && (row ? row->holds : state == SessionState::kHolding);
 }
 
 std::string_view Name(FingerRole role) {

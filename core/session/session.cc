@@ -70,24 +70,11 @@ ActivityContext Session::Impl::Context() {
 }
 
 Activity* Session::Impl::Running(SessionState in) {
-  switch (in) {
-    case SessionState::kGrasping:
-      return &grasp;
-    case SessionState::kReleasing:
-      return &release;
-    case SessionState::kExploring:
-      return &explore;
-    case SessionState::kRotating:
-      return &rotate;
-    case SessionState::kMoving:
-      return &move;
-    case SessionState::kIdle:
-    case SessionState::kHolding:
-    case SessionState::kDropped:
-    case SessionState::kFaulted:
-      return nullptr;
-  }
-  return nullptr;
+  Activity* running = nullptr;
+  ForEachActivity(activities, [&](const JobInfo& row, auto& activity) {
+    if (row.state == in) running = &activity;
+  });
+  return running;
 }
 
 void Session::Impl::Sense() {
@@ -188,7 +175,9 @@ void Session::MeasureStages(bool on) {
   impl_->world.MeasureStages(on);
 }
 Session::StageTimes Session::stage_times() const { return impl_->times; }
-const RegraspRecord& Session::last_regrasp() const { return impl_->rotate.last_regrasp(); }
+const RegraspRecord& Session::last_regrasp() const {
+  return std::get<RotateActivity>(impl_->activities).last_regrasp();
+}
 const WorldState& Session::truth() const { return impl_->world.state(); }
 const FeltSurface& Session::felt_surface() const { return impl_->felt; }
 const World& Session::world() const { return impl_->world; }

@@ -8,11 +8,7 @@
 
 #include "core/control/felt_friction.h"
 #include "core/sensing/sensors.h"
-#include "core/session/activity/explore.h"
-#include "core/session/activity/grasp.h"
-#include "core/session/activity/move.h"
-#include "core/session/activity/release.h"
-#include "core/session/activity/rotate.h"
+#include "core/session/activity/all.h"
 #include "core/session/quality_monitor.h"
 
 namespace regrasp {
@@ -53,7 +49,8 @@ struct Session::Impl {
   // feel.cc: the object's surface, from what the controller believes
   void Feel();
   void FeelFriction();
-  /// parameters.control, with the friction that was felt where landings are planned.
+  /// What this tick goes by: parameters.control, with the friction that was felt where landings are
+  /// planned, and parameters.shape.
   void CountOn();
 
   // watch.cc
@@ -70,7 +67,7 @@ struct Session::Impl {
   void Fields(V& v) {
     v("tick", tick);
     v("seed", seed);
-    v("state", state, SessionState::kReleasing);
+    v("state", state, kLastState);
     v("parameters", parameters);
     v("world", world);
     v("sensors", sensors);
@@ -86,12 +83,10 @@ struct Session::Impl {
     v("push_until", push_until, kCountOrNone);
     v("drop_ticks", drop_ticks);
     v("was_in_contact", was_in_contact);
-    // The other activities begin with their Start.
-    if (state == SessionState::kGrasping) v("grasp", grasp);
-    if (state == SessionState::kReleasing) v("release", release);
-    if (state == SessionState::kExploring) v("explore", explore);
-    if (state == SessionState::kRotating) v("rotate", rotate);
-    if (state == SessionState::kMoving) v("move", move);
+    // The activities that do not run begin with their Start.
+    ForEachActivity(activities, [&](const JobInfo& row, auto& activity) {
+      if (row.state == state) v(row.name.data(), activity);
+    });
   }
 
   // Fixed for the run.
@@ -116,11 +111,7 @@ struct Session::Impl {
   FingerTasks tasks;
   ObjectMotion motion;  // wanted in the last tick
   JobRecord job;
-  GraspActivity grasp;
-  ReleaseActivity release;
-  ExploreActivity explore;
-  RotateActivity rotate;
-  MoveActivity move;
+  Activities activities;
   std::int64_t push_until = -1;  // tick
   int drop_ticks = 0;            // in a row with fewer than two contacts
   std::array<bool, kMaxFingers> was_in_contact{};

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kIntroduction = R"(# Protocol
 
-<!-- Made by `regraspd --print-protocol`. Change core/protocol/methods.cc or daemon/pages/protocol_page.cc, not this page. -->
+<!-- Made by `regraspd --print-protocol`. Change core/protocol/*_rows.h or daemon/pages/protocol_page.cc, not this page. -->
 
 JSON-RPC 2.0 over a Unix stream socket: UTF-8, one object (or one batch of at most {batch}) per line. Try it:
 
@@ -138,19 +138,7 @@ std::string ProtocolPage() {
       "## A job's record\n\n"
       "`id, method, state` (`queued`, `running`, `done`, `failed`, `cancelled`)`, error, progress` "
       "(0 ... 1)`, "
-      "start_tick, end_tick, finished`. An `explore` job adds `finger, criterion, estimator, seed, "
-      "converged, reason` (`gradient`, `max_cycles`, `contact_lost`, `dropped`, `cancelled`, "
-      "`object_moved`)`, "
-      "cycles, "
-      "phi_initial, phi_final, phi_true_initial, phi_true_final, path_length_m`; the two "
-      "`phi_true` are "
-      "noise-free, from the simulator, for judging only. A `move` job adds `offset_m[3], "
-      "rotation_rad[3]` (wanted)`, achieved_offset_m[3], achieved_rotation_rad[3], reached, end` "
-      "(`reached`, `joint_limit`, `object_stuck`, `manipulability`, `excursion`, `load_margin`, "
-      "`stopped`, `dropped`; null while it moves, and where it never moved or the simulation "
-      "faulted)`, end_finger` (whose limit it was, or null)`, "
-      "max_position_error_m, max_rotation_error_rad` (object against its reference)`, sim_time_s`; "
-      "what was achieved and the errors are noise-free, too.\n\n";
+      "start_tick, end_tick, finished`, and what its method says above.\n\n";
   page += ParameterSection() + MeasureSection();
   page += "## Fields of run files\n\n" + RunFieldTable() + "\n";
   page +=

@@ -19,8 +19,6 @@ constexpr std::array kHandlers = {
     Entry{"contacts", handlers::Contacts},
     Entry{"describe", handlers::Describe},
     Entry{"events", handlers::Events},
-    Entry{"explore", handlers::Explore},
-    Entry{"grasp", handlers::Grasp},
     Entry{"hello", handlers::Hello},
     Entry{"identity", handlers::Identity},
     Entry{"job.cancel", handlers::JobCancel},
@@ -28,7 +26,6 @@ constexpr std::array kHandlers = {
     Entry{"job.list", handlers::JobList},
     Entry{"job.wait", handlers::JobWait},
     Entry{"joints", handlers::Joints},
-    Entry{"move", handlers::Move},
     Entry{"noise.get", handlers::NoiseGet},
     Entry{"noise.set", handlers::NoiseSet},
     Entry{"param.get", handlers::ParamGet},
@@ -43,10 +40,8 @@ constexpr std::array kHandlers = {
     Entry{"record.list", handlers::RecordList},
     Entry{"record.start", handlers::RecordStart},
     Entry{"record.stop", handlers::RecordStop},
-    Entry{"release", handlers::Release},
     Entry{"reset", handlers::Reset},
     Entry{"resume", handlers::Resume},
-    Entry{"rotate", handlers::Rotate},
     Entry{"shape", handlers::Shape},
     Entry{"shutdown", handlers::Shutdown},
     Entry{"status", handlers::Status},
@@ -88,6 +83,7 @@ Outcome Later(Service& service, std::function<Json()> make) {
 }
 
 Handler FindHandler(std::string_view method) {
+  if (const Handler start = FindJobHandler(method)) return start;
   const auto it = std::ranges::lower_bound(kHandlers, method, {}, &Entry::method);
   return it != kHandlers.end() && it->method == method ? it->handler : nullptr;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-/// The handlers, by theme; handlers.cc lists them by method name.
+/// The handlers, by theme; handlers.cc lists them by method name, but for the jobs: those
+/// follow from the table of jobs.
 
 #include "daemon/requests/service.h"
 
@@ -12,20 +13,18 @@ Json StatusJson(Service& service);
 /// reads the disk. `make` shares nothing with the I/O thread.
 Outcome Later(Service& service, std::function<Json()> make);
 
+/// job_requests.cc: of a command that starts a job; null for others.
+Handler FindJobHandler(std::string_view method);
+
 namespace handlers {
 
 // simulation.cc
-Outcome Explore(Service&, const Params&, Client&);
-Outcome Grasp(Service&, const Params&, Client&);
-Outcome Move(Service&, const Params&, Client&);
 Outcome NoiseGet(Service&, const Params&, Client&);
 Outcome NoiseSet(Service&, const Params&, Client&);
 Outcome Pause(Service&, const Params&, Client&);
 Outcome Push(Service&, const Params&, Client&);
-Outcome Release(Service&, const Params&, Client&);
 Outcome Reset(Service&, const Params&, Client&);
 Outcome Resume(Service&, const Params&, Client&);
-Outcome Rotate(Service&, const Params&, Client&);
 Outcome Step(Service&, const Params&, Client&);
 Outcome Stop(Service&, const Params&, Client&);
 

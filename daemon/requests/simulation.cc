@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <numbers>
-#include <span>
-
 #include "core/sensing/noise.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
@@ -13,42 +9,12 @@
 namespace regrasp::handlers {
 namespace {
 
-constexpr double kLeastAxis = 1e-9;  // shorter than this, an axis has no direction
 constexpr std::int64_t kMostStepTicks = 1'000'000'000;
-constexpr double kLeastMove = 1e-9;  // shorter than this, an offset [m] or rotation [rad] is none
-
-/// Checks, makes a job and queues the command that works on it.
-Outcome StartJob(Service& service, JobMethod method, Command command) {
-  service.CheckAllowed(command.type);
-  service.CheckMeasure(service.accepted.parameters, method, command.criterion);
-  JobRecord& job = service.jobs().Add(method);
-  const std::int64_t id = job.id;
-  job.explore.finger = command.finger;
-  job.explore.criterion = command.criterion;
-  job.explore.estimator = command.estimator;
-  job.explore.seed = command.seed;
-  job.move.offset_m = command.offset_W;
-  job.move.rotation_rad = command.rotation_W;
-  command.job = id;
-  try {
-    const std::uint64_t barrier = service.PostCommand(std::move(command));
-    return {.result = {{"job", id}}, .barrier = barrier};
-  } catch (...) {
-    service.jobs().Withdraw(id);
-    throw;
-  }
-}
 
 Command Of(CommandType type) {
   Command command;
   command.type = type;
   return command;
-}
-
-/// The entry of an enumeration whose name is `word`, one of `names`.
-template <typename E>
-E EnumNamed(std::string_view word, std::span<const std::string_view> names) {
-  return static_cast<E>(std::ranges::find(names, word) - names.begin());
 }
 
 Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
@@ -58,86 +24,6 @@ Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
 }
 
 }  // namespace
-
-Outcome Grasp(Service& service, const Params&, Client&) {
-  return StartJob(service, JobMethod::kGrasp, Of(CommandType::kGrasp));
-}
-
-Outcome Release(Service& service, const Params&, Client&) {
-  return StartJob(service, JobMethod::kRelease, Of(CommandType::kRelease));
-}
-
-Outcome Explore(Service& service, const Params& params, Client&) {
-  Command command = Of(CommandType::kExplore);
-  command.finger = service.hand().FindFinger(params.String("finger"));
-  command.criterion =
-      EnumNamed<Criterion>(params.String("criterion", "manipulability"), kCriterionNames);
-  command.estimator =
-      EnumNamed<Estimator>(params.String("estimator", "least_squares"), kEstimatorNames);
-  command.seed = static_cast<std::uint64_t>(
-      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
-  command.max_cycles = static_cast<int>(params.Integer("max_cycles", 0));
-  return StartJob(service, JobMethod::kExplore, std::move(command));
-}
-
-Outcome Rotate(Service& service, const Params& params, Client&) {
-  const bool continuous = params.Bool("continuous", false);
-  const int given = params.Has("angle_rad") + params.Has("turns") + continuous;
-  if (given != 1)
-    throw RpcException(
-        RpcError{ErrorCode::kInvalidParams,
-                 fmt::format("rotate takes one of angle_rad, turns and continuous, not {}", given),
-                 "regrasp rotate --angle 90 --wait",
-                 "angle_rad",
-                 {}});
-  Command command = Of(CommandType::kRotate);
-  command.continuous = continuous;
-  command.angle_rad = params.Number("angle_rad", 2 * std::numbers::pi * params.Number("turns", 0));
-  if (!continuous && command.angle_rad == 0)
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                "an angle of 0 leaves nothing to turn",
-                                "regrasp rotate --angle 90 --wait",
-                                params.Has("turns") ? "turns" : "angle_rad",
-                                {}});
-  command.axis_W = params.Vector("axis", command.axis_W);
-  const double length = command.axis_W.norm();
-  if (length < kLeastAxis)
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                "the axis has no direction: its length is 0",
-                                "regrasp rotate --angle 90 --axis 0,0,1",
-                                "axis",
-                                {}});
-  command.axis_W /= length;
-  command.speed_rad_s = params.Number("speed_rad_s", 0);
-  return StartJob(service, JobMethod::kRotate, std::move(command));
-}
-
-Outcome Move(Service& service, const Params& params, Client&) {
-  Command command = Of(CommandType::kMove);
-  command.offset_W = params.Vector("offset_m");
-  command.rotation_W = params.Vector("rotation_rad");
-  for (Vector3d* vector : {&command.offset_W, &command.rotation_W})
-    if (vector->norm() < kLeastMove) vector->setZero();
-  if (command.offset_W.isZero(0) && command.rotation_W.isZero(0))
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                "an offset and a rotation of 0 leave nothing to move",
-                                "regrasp move --by 0,0,5 --wait",
-                                "offset_m",
-                                {}});
-  const auto check = [](const char* name, double length, double most, const char* unit) {
-    // What is written in decimals may be longer by its rounding.
-    if (length <= most * (1 + 1e-9)) return;
-    throw RpcException(
-        RpcError{ErrorCode::kInvalidParams,
-                 fmt::format("{} of length {:.6g} {} is too long", name, length, unit),
-                 fmt::format("allowed: at most {:.6g} {}", most, unit),
-                 name,
-                 {}});
-  };
-  check("offset_m", command.offset_W.norm(), kMaxMoveOffset, "m");
-  check("rotation_rad", command.rotation_W.norm(), std::numbers::pi, "rad");
-  return StartJob(service, JobMethod::kMove, std::move(command));
-}
 
 Outcome Stop(Service& service, const Params&, Client&) {
   service.CheckAllowed(CommandType::kStop);

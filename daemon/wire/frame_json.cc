@@ -21,6 +21,30 @@ Json FingerName(const HandModel& hand, int finger) {
   return hand.fingers[static_cast<std::size_t>(finger)].name;
 }
 
+/// Writes what the record of a job of one method has besides, each field by its name.
+struct ResultWriter {
+  static constexpr bool kHashes = false, kLoads = false, kWrites = false;
+  struct FingerIndex {};
+  static FingerIndex Finger() { return {}; }
+
+  void operator()(const char* name, int finger, FingerIndex) {
+    json[name] = FingerName(hand, finger);
+  }
+  void operator()(const char* name, const Vector3d& v) { json[name] = Vector(v); }
+  template <typename T>
+  void operator()(const char* name, T value) {
+    json[name] = value;
+  }
+  /// A word; null where it has none.
+  template <typename T>
+  requires(std::is_enum_v<T>) void operator()(const char* name, T value, T /*last*/) {
+    json[name] = Name(value).empty() ? Json() : Json(Name(value));
+  }
+
+  Json& json;
+  const HandModel& hand;
+};
+
 Json Tick(std::int64_t tick) { return tick < 0 ? Json() : Json(tick); }
 
 /// The measure that exploration maximises now, or would: the rule of `switched` (Sec. II).
@@ -225,47 +249,8 @@ Json JobJson(const JobRecord& job, const HandModel& hand) {
                {"progress", job.progress},
                {"start_tick", Tick(job.start_tick)},
                {"end_tick", Tick(job.end_tick)}};
-  if (job.method == JobMethod::kExplore) {
-    const ExploreResult& e = job.explore;
-    json["finger"] = FingerName(hand, e.finger);
-    json["criterion"] = Name(e.criterion);
-    json["estimator"] = Name(e.estimator);
-    json["seed"] = e.seed;
-    json["converged"] = e.converged;
-    json["reason"] = e.reason == ExploreReason::kNone ? Json() : Json(Name(e.reason));
-    json["cycles"] = e.cycles;
-    json["phi_initial"] = e.phi_initial;
-    json["phi_final"] = e.phi_final;
-    json["phi_true_initial"] = e.phi_true_initial;
-    json["phi_true_final"] = e.phi_true_final;
-    json["path_length_m"] = e.path_length_m;
-  }
-  if (job.method == JobMethod::kRotate) {
-    const RotateResult& r = job.rotate;
-    json["angle_rad"] = r.angle_rad;
-    json["turns"] = r.turns;
-    json["gait_cycles"] = r.gait_cycles;
-    json["regrasps"] = r.regrasps;
-    json["dropped"] = r.dropped;
-    json["max_position_error_m"] = r.max_position_error_m;
-    json["max_lag_m"] = r.max_lag_m;
-    json["reference_resets"] = r.reference_resets;
-    json["max_tilt_rad"] = r.max_tilt_rad;
-    json["sim_time_s"] = r.sim_time_s;
-  }
-  if (job.method == JobMethod::kMove) {
-    const MoveResult& m = job.move;
-    json["offset_m"] = Vector(m.offset_m);
-    json["rotation_rad"] = Vector(m.rotation_rad);
-    json["achieved_offset_m"] = Vector(m.achieved_offset_m);
-    json["achieved_rotation_rad"] = Vector(m.achieved_rotation_rad);
-    json["reached"] = m.reached;
-    json["end"] = m.end == MoveEnd::kNone ? Json() : Json(Name(m.end));
-    json["end_finger"] = FingerName(hand, m.end_finger);
-    json["max_position_error_m"] = m.max_position_error_m;
-    json["max_rotation_error_rad"] = m.max_rotation_error_rad;
-    json["sim_time_s"] = m.sim_time_s;
-  }
+  ResultWriter writer{json, hand};
+  const_cast<JobRecord&>(job).ResultFields(writer);  // only reads
   json["finished"] = ended;
   return json;
 }

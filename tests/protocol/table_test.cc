@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -22,6 +23,16 @@ namespace {
 TEST(MethodTable, EveryMethodHasAHandler) {
   for (const MethodSpec& method : MethodTable())
     EXPECT_NE(FindHandler(method.name), nullptr) << method.name;
+}
+
+TEST(MethodTable, HasARowForEveryJob) {
+  EXPECT_EQ(JobMethods().size(), kJobTable.size());
+  for (const JobInfo& job : kJobTable) {
+    const auto row = std::ranges::find(JobMethods(), job.name, &MethodSpec::name);
+    ASSERT_NE(row, JobMethods().end()) << job.name;
+    EXPECT_TRUE(row->job) << job.name;
+    ASSERT_NE(FindMethod(job.name), nullptr);
+  }
 }
 
 TEST(MethodTable, IsComplete) {
