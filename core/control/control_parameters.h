@@ -53,6 +53,13 @@ struct ControlParameters {
       0.6;  ///< share of the sliding finger's normal force assumed to drag on the object
   double slide_slow_speed = 0.001;     ///< below it the friction feedforward fades out [m/s]
   double normal_force_integral = 2.0;  ///< [1/s]
+  // Friction, felt by fingers that slide (felt_friction.h).
+  double feel_settled_s = 0.1;  ///< sliding for so long, a finger has the speed it is asked for
+  double feel_speed = 0.002;    ///< it slides from this speed on [m/s]
+  double feel_force = 0.1;      ///< ... pressed on with this force [N]
+  double feel_memory_s = 2.0;   ///< the mean is over about so much of the last sliding
+  double feel_enough_s = 0.1;   ///< ... which is known after so much
+  double feel_least = 0.1;      ///< coefficient counted on, at least
   // Grasping.
   double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]
   double close_force = 0.15;        ///< a finger that has touched waits with this force [N]
@@ -64,9 +71,10 @@ struct ControlParameters {
   double settle_s = 0.7;            ///< then so long until `holding`
   // Stability.
   Measure stability_measure = Measure::kMinSingularValue;  ///< what stability means
-  double stability_threshold = 0.30;  ///< `switched`: below it stability is maximised
-  double drop_contact_s = 0.25;       ///< fewer than two contacts for so long: dropped
-  double release_s = 0.5;             ///< from letting go to idle
+  double stability_hysteresis = 1.05;  ///< once it is, it stays so up to so much of the threshold
+  double stability_threshold = 0.30;   ///< `switched`: below it stability is maximised
+  double drop_contact_s = 0.25;        ///< fewer than two contacts for so long: dropped
+  double release_s = 0.5;              ///< from letting go to idle
   double release_pull = 12.0;     ///< every finger leaves with this force, so that none drags [N]
   double release_pull_s = 0.010;  ///< ... for so long
   double drop_distance = 0.030;   ///< object this far from its reference: dropped [m]

@@ -12,13 +12,16 @@ class FeltFriction {
  public:
   /// One tick. `commanded`: force on the object asked of each finger [N].
   void Update(const Estimate& estimate, const FingerTasks& tasks,
-              const FixedVector<Vector3d, kMaxFingers>& commanded, double dt);
+              const FixedVector<Vector3d, kMaxFingers>& commanded,
+              const ControlParameters& parameters, double dt);
   /// Fingers have slid for long enough.
-  bool known() const { return felt_s_ >= kEnough_s; }
+  bool known(const ControlParameters& parameters) const {
+    return felt_s_ >= parameters.feel_enough_s;
+  }
   double felt() const { return mean_; }      ///< mean of |f_t| / f_n; 0: nothing has slid
   double felt_s() const { return felt_s_; }  ///< time over which it was felt [s]
-  /// What to count on: `share` of what was felt, `unfelt` until it is known.
-  double Counted(double share, double unfelt) const;
+  /// What to count on: `share` of what was felt, friction_estimate until it is known.
+  double Counted(double share, const ControlParameters& parameters) const;
   template <typename V>
   void Fields(V& v) {
     v("mean", mean_);
@@ -27,7 +30,6 @@ class FeltFriction {
   }
 
  private:
-  static constexpr double kEnough_s = 0.1;
   double mean_ = 0, felt_s_ = 0;
   std::array<double, kMaxFingers> sliding_s_{};  // in a row, by finger
 };

@@ -26,6 +26,7 @@ struct ExplorationParameters {
   double least_facing =
       -0.05;  ///< link axis . outward normal: above it the contact nears the side of the tip
   double clearance = 0.002;                   ///< a link of another finger this near is a wall [m]
+  double wall_return = 5.0;                   ///< speed back from behind a wall, per depth [1/s]
   double dither_speed = 0.005;                ///< least_squares: circular dither [m/s]
   double dither_hz = 1.5;                     ///< least_squares: its frequency
   double forgetting = 0.85;                   ///< least_squares: weight of the past per update

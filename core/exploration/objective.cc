@@ -7,12 +7,6 @@
 #include "core/quality/measures.h"
 
 namespace regrasp {
-namespace {
-
-constexpr double kHysteresis = 1.05;
-
-}  // namespace
-
 double GraspStability(const Estimate& estimate, FingerSet fingers,
                       const ControlParameters& parameters) {
   const Grasp grasp = GraspOf(estimate, fingers, parameters.friction_estimate);
@@ -40,7 +34,8 @@ ObjectiveValue Objective(const HandModel& hand, const ObjectiveOf& of, const Est
   if (of.criterion == Criterion::kStability) return {stability, true};
   if (of.criterion == Criterion::kCombined)
     return {manipulability + exploration.stability_weight * stability, false};
-  const double threshold = control.stability_threshold * (was_on_stability ? kHysteresis : 1.0);
+  const double threshold =
+      control.stability_threshold * (was_on_stability ? control.stability_hysteresis : 1.0);
   const bool on_stability = stability < threshold;
   return {on_stability ? stability : manipulability, on_stability};
 }

@@ -11,8 +11,7 @@ namespace {
 // left after filtering is about 0.13 mm.
 constexpr double kRidge = 2e-8;  // m²
 // Rate at which a finger backs out of a wall.
-constexpr double kWallReturn = 5.0;  // 1/s
-constexpr double kSameWall = 0.7;    // cosine between two walls that are taken for the same one
+constexpr double kSameWall = 0.7;  // cosine between two walls that are taken for the same one
 
 }  // namespace
 
@@ -94,7 +93,8 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   }
   for (const Wall& wall : input.walls)
     velocity_W_ -=
-        std::clamp(kWallReturn * Depth(wall), 0.0, 0.5 * parameters.speed_min) * wall.direction_W;
+        std::clamp(parameters.wall_return * Depth(wall), 0.0, 0.5 * parameters.speed_min) *
+        wall.direction_W;
   if (least_squares) {
     const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;
     velocity_W_ +=

@@ -5,12 +5,6 @@
 #include "core/gait/finger_gait.h"
 
 namespace regrasp {
-namespace {
-
-constexpr int kSearchTicks = 5;    // from one evaluation of a stance to the next
-constexpr int kSearchLimit = 300;  // evaluations
-
-}  // namespace
 
 void FingerGait::SearchStance(const ControlTick& tick) {
   const ControlParameters& control = tick.control;
@@ -21,10 +15,10 @@ void FingerGait::SearchStance(const ControlTick& tick) {
     search_.Start(first_stance_, home_.stance, tick.grasp, leaves, tick.gait.max_shift,
                   request_.seed + static_cast<std::uint64_t>(searches_++));
   }
-  if (ticks_ % kSearchTicks == 0)
+  if (ticks_ % Ticks(tick.gait.search_interval_s, tick.dt) == 0)
     search_.Step(control.mass_estimate * tick.gravity_W, control.friction_estimate,
-                 tick.estimate.object_scale, control.max_normal_force);
-  if (search_.margin() < margin_wanted_ && search_.evaluations() < kSearchLimit) return;
+                 tick.estimate.object_scale, control.max_normal_force, tick.gait.search_step);
+  if (search_.margin() < margin_wanted_ && search_.evaluations() < tick.gait.search_trials) return;
   home_.stance = search_.stance();
   waiting_ = tick.grasp.without(request_.make_room_for);
   Enter(GaitPhase::kChoose);

@@ -2,6 +2,7 @@
 
 #include "core/exploration/criterion.h"
 #include "core/exploration/exploration_parameters.h"
+#include "core/hand/reach_rule.h"
 
 namespace regrasp {
 
@@ -152,6 +153,36 @@ struct GaitParameters {
   double limit_rate_shift = 12.0;  ///< the same for a shift [rad/m]: equal at 25 mm from the axis
   double yielding_cap = 2.0;       ///< force of a finger that shall slip, at most, in slide_force
   double rest_s = 0.4;             ///< move: rest until the object has caught up [s]
+  // Hop over the felt surface (hop.h).
+  double there_on_object = 0.0005;  ///< a target on the object is reached this near [m]
+  double air_limit_s = 1.0;         ///< the finger comes down anyway after so long
+  double clear_share = 0.8;         ///< of the lift: it crosses so far above the surface
+  double least_slope = 0.5;         ///< n . d: a steeper surface counts as at this slope
+  double rise_most = 0.010;         ///< ... and lifts it by at most so much more [m]
+  double seek_way = 0.025;          ///< it looks so far inwards for a surface it has missed [m]
+  // Planning a landing (landing_plan.h) ...
+  ReachRule reach;
+  double landing_limit_margin = 0.05;  ///< of a joint there [rad]
+  double landing_missing = 0.0015;     ///< a tip this far from its target does not reach it [m]
+  double landing_far = 0.010;          ///< distance from home that costs landing_far_cost [m]
+  double landing_far_cost = 0.3;       ///< in score
+  double landing_clearance = 0.001;    ///< to other fingers [m]
+  double landing_overlap = 0.0005;     ///< with one of them: the finger does not get there [m]
+  double landing_known = 0.35;         ///< farther from what was felt is unknown [rad]
+  double landing_unknown_cost = 1.0;   ///< in score per rad from what was felt
+  double landing_unknown_share = 0.3;  ///< of that angle: so far its normal may be off
+  double landing_penalty = 2.0;        ///< in score, for what a landing must not do
+  double link_clearance = 0.002;       ///< of the link before the tip from the object [m]
+  double link_touches = 0.004;         ///< so much less costs landing_penalty [m]
+  // ... and a stance (stance_plan.h, stance_search.h).
+  int stance_trials = 400;            ///< of a plan
+  double stance_step = 0.003;         ///< standard deviation of a trial's step, per axis [m]
+  double stance_moves = 0.6;          ///< share of the contacts that a trial moves
+  double stance_unknown = 0.25;       ///< no contact farther from what was felt [rad]
+  double stance_limit_margin = 0.03;  ///< of a joint there [rad]
+  int search_trials = 300;            ///< by the table: stances looked at
+  double search_interval_s = 0.005;   ///< ... one in so long
+  double search_step = 0.0015;        ///< ... standard deviation of its step, per axis [m]
 };
 
 }  // namespace regrasp

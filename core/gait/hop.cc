@@ -8,13 +8,7 @@
 namespace regrasp {
 namespace {
 
-constexpr double kThere = 1e-6;          // m: nearer than this a moving target has arrived
-constexpr double kThereOnObject = 5e-4;  // m: the same on the object, as noisy as its pose
-constexpr double kAirLimit_s = 1.0;      // over the felt surface: then it comes down anyway
-constexpr double kClearShare = 0.8;      // of the lift: so far above the felt surface it crosses
-constexpr double kLeastSlope = 0.5;  // n . d: steeper than that the height counts as at this slope
-constexpr double kMostRise = 0.010;  // [m]
-constexpr double kSeekWay = 0.025;   // [m]
+constexpr double kThere = 1e-6;  // m: nearer than this a moving target has arrived
 
 /// Unit direction at `from` of the arc to `to` about the origin: the angle and the distance from
 /// the origin change in proportion. Zero where they coincide.
@@ -69,9 +63,10 @@ void Hop::KeepAbove(const ControlTick& tick) {
   const Vector3d r = p_target_W_ - estimate.p_WO;
   const Vector3d d = r.normalized();
   const SurfacePoint surface = tick.felt.At(estimate.q_WO.conjugate() * d);
-  const double slope = std::max(kLeastSlope, (estimate.q_WO * surface.normal_O).dot(d));
-  const double height = tick.hand.fingers[finger_].tip_radius + kClearShare * tick.gait.lift_height;
-  const double radius = surface.p_O.norm() + std::min(height / slope, height + kMostRise);
+  const double slope = std::max(tick.gait.least_slope, (estimate.q_WO * surface.normal_O).dot(d));
+  const double height =
+      tick.hand.fingers[finger_].tip_radius + tick.gait.clear_share * tick.gait.lift_height;
+  const double radius = surface.p_O.norm() + std::min(height / slope, height + tick.gait.rise_most);
   const double rise = std::min(radius - r.norm(), tick.gait.across_speed * tick.dt);
   if (rise > 0) p_target_W_ += rise * d;
 }
@@ -110,7 +105,7 @@ void Hop::Across(const ControlTick& tick, const Target& target, bool down, Finge
   const double speed = std::min(parameters.across_speed, distance / tick.dt);
   Reach(speed * ArcDirection(p_target_W_ - target.p_WO, above - target.p_WO), tick.dt, task);
   if (over_surface_ && distance > 2 * parameters.lift_height) KeepAbove(tick);
-  const double there = over_surface_ ? kThereOnObject : kThere;
+  const double there = over_surface_ ? parameters.there_on_object : kThere;
   late_ticks_ = distance > there ? 0 : late_ticks_ + 1;
   // Something is in the way: the finger stands where it touches, rather than push the object. One
   // that a joint limit keeps on the surface slides on, to where its joints let it off.
@@ -121,7 +116,7 @@ void Hop::Across(const ControlTick& tick, const Target& target, bool down, Finge
   }
   const bool near = (above - finger.p_WF).norm() < parameters.land_distance;
   const bool late = late_ticks_ * tick.dt > parameters.land_late_s;
-  const bool long_in_air = over_surface_ && ticks_ * tick.dt > kAirLimit_s;
+  const bool long_in_air = over_surface_ && ticks_ * tick.dt > tick.gait.air_limit_s;
   if (down || long_in_air || (distance <= there && (near || late))) {
     normal_W_ = target.normal_W;
     const Quaterniond& q_WO = tick.estimate.q_WO;
@@ -137,7 +132,7 @@ void Hop::Seek(const ControlTick& tick, FingerTask* task) {
   Reach(tick.gait.down_speed * way.normalized(), tick.dt, task);
   if (Touches(tick, tick.finger(finger_)))
     Enter(Phase::kLanded);
-  else if (path_ > kSeekWay || way.norm() < tick.hand.fingers[finger_].tip_radius)
+  else if (path_ > tick.gait.seek_way || way.norm() < tick.hand.fingers[finger_].tip_radius)
     Enter(Phase::kGoBack);
 }
 
@@ -153,7 +148,7 @@ void Hop::GoBack(const ControlTick& tick, FingerTask* task) {
   KeepAbove(tick);
   if (Touches(tick, tick.finger(finger_)) && path_ > parameters.clear_distance) {
     Enter(Phase::kLanded);
-  } else if (distance < parameters.land_distance || ticks_ * tick.dt > kAirLimit_s) {
+  } else if (distance < parameters.land_distance || ticks_ * tick.dt > tick.gait.air_limit_s) {
     normal_W_ = normal_W;
     Enter(Phase::kDown);
   }

@@ -15,19 +15,9 @@ namespace {
 
 constexpr int kRatedPerTick = 1;
 constexpr int kReachSteps = 8;
-constexpr double kLimitMargin = 0.05;    // of a joint at the landing [rad]
-constexpr double kMissing = 0.0015;      // a tip this far from its target does not reach it [m]
-constexpr double kFar2 = 0.010 * 0.010;  // distance from home that costs kFarCost [m²]
-constexpr double kFarCost = 0.3;
-constexpr double kClearance = 0.001;  // to links of other fingers [m]
-constexpr double kOverlap = 0.0005;   // with one of them: the finger does not get there [m]
-constexpr double kKnown = 0.35;       // farther from all that was felt the surface is unknown [rad]
-constexpr double kUnknownCost = 1.0;  // per rad from what was felt
-constexpr double kPenalty = 2.0;
-constexpr double kUnknownShare = 0.3;     // of the angle to the nearest felt direction
-constexpr double kLinkClearance = 0.002;  // of the link before the tip from the object [m]
-constexpr double kLinkTouches = 0.004;    // so much less costs kPenalty [m]
-constexpr double kNearObject = 1.8;       // of the mean radius: a link farther out is clear of it
+constexpr double kNearObject = 1.8;  // of the mean radius: a link farther out is clear of it
+
+double Square(double x) { return x * x; }
 
 /// Candidate `index` as an offset from home in its tangent plane, in units of the reach.
 Eigen::Vector2d RingOffset(int index) {
@@ -45,20 +35,19 @@ Eigen::Vector2d RingOffset(int index) {
   return Eigen::Vector2d::Zero();
 }
 
-/// Between a link and the felt surface, at most kLinkClearance; negative where they overlap [m].
-/// `q_OW`, `p_WO`: of the object.
-double GapToObject(const Bone& bone, const FeltSurface& felt, const Vector3d& p_WO,
-                   const Quaterniond& q_OW) {
-  constexpr double kLeastSlope = 0.5;  // n . d: steeper than that it counts as at this slope
-  double gap = kLinkClearance;
+/// Between a link and the felt surface, at most gait.link_clearance; negative where they overlap
+/// [m]. `q_OW`: of the object, for the place where it is sensed.
+double GapToObject(const Bone& bone, const ControlTick& tick, const Quaterniond& q_OW) {
+  const FeltSurface& felt = tick.felt;
+  double gap = tick.gait.link_clearance;
   if (bone.radius <= 0) return gap;
   for (const double share : {0.0, 0.5, 1.0}) {
-    const Vector3d r = bone.a_W + share * (bone.b_W - bone.a_W) - p_WO;
+    const Vector3d r = bone.a_W + share * (bone.b_W - bone.a_W) - tick.estimate.p_WO;
     const double distance = r.norm();
     if (distance > kNearObject * felt.mean_radius() + bone.radius || distance < 1e-6) continue;
     const SurfacePoint surface = felt.At(q_OW * r);
     const double slope =
-        std::max(kLeastSlope, surface.normal_O.dot(surface.p_O) / surface.p_O.norm());
+        std::max(tick.gait.least_slope, surface.normal_O.dot(surface.p_O) / surface.p_O.norm());
     gap = std::min(gap, (distance - surface.p_O.norm()) * slope - bone.radius);
   }
   return gap;
@@ -70,14 +59,16 @@ double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& the
                    const Vector3d& turn_W) {
   const Vector3d& p_WO = tick.estimate.p_WO;
   const Quaterniond q_OW = tick.estimate.q_WO.conjugate();
-  double gap = GapToObject(there.middle, tick.felt, p_WO, q_OW);
+  double gap = GapToObject(there.middle, tick, q_OW);
   if (!turn_W.isZero()) {
     const Quaterniond turn = FromRotationVector(turn_W);
     const Vector3d p_WF = p_WO + turn * (there.p_WF - p_WO);
-    const FingerPosture turned = ReachFor(tick.hand, finger, there, p_WF, 0.0, kReachSteps);
-    gap = std::min(gap, GapToObject(turned.middle, tick.felt, p_WO, q_OW * turn.conjugate()));
+    const FingerPosture turned =
+        ReachFor(tick.hand, finger, there, p_WF, 0.0, kReachSteps, tick.gait.reach);
+    gap = std::min(gap, GapToObject(turned.middle, tick, q_OW * turn.conjugate()));
   }
-  return kPenalty * std::min(1.5, (kLinkClearance - gap) / kLinkTouches);
+  return tick.gait.landing_penalty *
+         std::min(1.5, (tick.gait.link_clearance - gap) / tick.gait.link_touches);
 }
 
 /// The coming turn, as far as the finger follows [rad, rotation vector in W].
@@ -113,16 +104,19 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   landing.normal_O = surface.normal_O;
   landing.p_OF = surface.p_O + hand.fingers[finger].tip_radius * surface.normal_O;
   landing.unknown = surface.unknown;
-  const double tilt =
-      tick.gait.doubt * surface.bend + kUnknownShare * std::min(0.5, surface.unknown);
+  const double tilt = tick.gait.doubt * surface.bend +
+                      tick.gait.landing_unknown_share * std::min(0.5, surface.unknown);
   candidate.friction = FrictionUnderTilt(tick.control.friction_estimate, tilt);
 
   const Vector3d p_WF = estimate.p_WO + estimate.q_WO * landing.p_OF;
   const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
-  const FingerPosture there = ReachFor(hand, finger, now, p_WF, kLimitMargin, kReachSteps);
+  const FingerPosture there = ReachFor(hand, finger, now, p_WF, tick.gait.landing_limit_margin,
+                                       kReachSteps, tick.gait.reach);
   const double missing = (there.p_WF - p_WF).norm();
-  landing.score = CheapScore(tick, there, &landing) - kFarCost * offset.squaredNorm() / kFar2;
-  if (missing > kMissing) landing.score -= kPenalty * (1 + missing / 0.01);
+  landing.score = CheapScore(tick, there, &landing) -
+                  tick.gait.landing_far_cost * offset.squaredNorm() / Square(tick.gait.landing_far);
+  if (missing > tick.gait.landing_missing)
+    landing.score -= tick.gait.landing_penalty * (1 + missing / 0.01);
   const bool listed =
       !shortlist_.full() || landing.score > shortlist_[shortlist_.size() - 1].landing.score;
   if (listed)
@@ -135,27 +129,30 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   const HandModel& hand = tick.hand;
   const Estimate& estimate = tick.estimate;
   const int finger = request_.finger;
+  const double penalty = tick.gait.landing_penalty, clearance = tick.gait.landing_clearance;
   const double unknown = landing->unknown;
-  double score = -kUnknownCost * unknown - kPenalty * std::max(0.0, unknown - kKnown);
+  double score = -tick.gait.landing_unknown_cost * unknown -
+                 penalty * std::max(0.0, unknown - tick.gait.landing_known);
   const double facing = there.along_W.dot(estimate.q_WO * landing->normal_O);
   if (facing > tick.exploration.least_facing)
-    score -= kPenalty * (facing - tick.exploration.least_facing);
-  double gap = kClearance;
+    score -= penalty * (facing - tick.exploration.least_facing);
+  double gap = clearance;
   for (int i : tick.grasp.without(finger)) {
     const FingerPosture other = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
     for (const Bone* own : {&there.tip, &there.middle})
       for (const Bone* its : {&other.tip, &other.middle}) gap = std::min(gap, Gap(*own, *its));
   }
-  if (gap < kClearance) score -= kPenalty * std::min(5.0, (kClearance - gap) / 0.002);
-  landing->blocked = gap < -kOverlap;
+  if (gap < clearance) score -= penalty * std::min(5.0, (clearance - gap) / 0.002);
+  landing->blocked = gap < -tick.gait.landing_overlap;
   if (!request_.axis_W.isZero()) {
-    landing->reserve = MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W,
-                                     tick.gait.limit_margin, tick.gait.reserve_wanted);
+    landing->reserve =
+        MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W, tick.gait.limit_margin,
+                      tick.gait.reserve_wanted, tick.gait.reach);
     score += Share(landing->reserve, tick.gait.reserve_wanted);
     // The finger with the least reserve ends the coming motion for all of them.
     const double short_of =
         1 - Share(landing->reserve, std::min(tick.gait.step_rad, tick.gait.reserve_wanted));
-    score -= kPenalty * short_of * short_of;
+    score -= penalty * short_of * short_of;
   }
   return score;
 }
@@ -179,7 +176,7 @@ LandingPlan::Candidate LandingPlan::Stay(const ControlTick& tick) const {
   const double far2 =
       TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC, request_.home.normal_W)
           .squaredNorm();
-  landing.score -= kFarCost * far2 / kFar2;
+  landing.score -= tick.gait.landing_far_cost * far2 / Square(tick.gait.landing_far);
   return candidate;
 }
 

@@ -8,14 +8,7 @@ namespace regrasp {
 namespace {
 
 constexpr std::uint64_t kStream = 2100;
-constexpr int kTrials = 400;
-constexpr double kStep = 0.003;        // standard deviation of a trial step per axis [m]
-constexpr double kMoves = 0.6;         // share of the contacts that a trial moves
-constexpr double kUnknown = 0.25;      // no landing farther from all that was felt [rad]
-constexpr double kLimitMargin = 0.03;  // of a joint at the landing [rad]
 constexpr int kReachSteps = 6;
-constexpr double kMissing = 0.0015;   // [m]
-constexpr double kClearance = 0.001;  // between fingertips [m]
 
 }  // namespace
 
@@ -54,18 +47,20 @@ double StancePlan::MarginOf(const ControlTick& tick, const Landings& landings) c
 bool StancePlan::Move(const ControlTick& tick, int finger, Landings* trial) {
   const Estimate& estimate = tick.estimate;
   Landing& landing = (*trial)[finger];
-  const Vector3d step = TangentPart(kStep * random_.Normal3(), landing.normal_O);
+  const Vector3d step = TangentPart(tick.gait.stance_step * random_.Normal3(), landing.normal_O);
   const SurfacePoint surface = tick.felt.At(landing.p_OC + step);
-  if (surface.unknown > kUnknown || (surface.p_O - first_[finger].p_OC).norm() > reach_)
+  if (surface.unknown > tick.gait.stance_unknown ||
+      (surface.p_O - first_[finger].p_OC).norm() > reach_)
     return false;
   const Vector3d p_OF = surface.p_O + tick.hand.fingers[finger].tip_radius * surface.normal_O;
   const Vector3d p_WF = estimate.p_WO + estimate.q_WO * p_OF;
   const FingerPosture now = PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, estimate.q));
-  const FingerPosture there = ReachFor(tick.hand, finger, now, p_WF, kLimitMargin, kReachSteps);
-  if ((there.p_WF - p_WF).norm() > kMissing) return false;
+  const FingerPosture there = ReachFor(tick.hand, finger, now, p_WF, tick.gait.stance_limit_margin,
+                                       kReachSteps, tick.gait.reach);
+  if ((there.p_WF - p_WF).norm() > tick.gait.landing_missing) return false;
   for (int i : tick.grasp.without(finger)) {
     const double apart = tick.hand.fingers[finger].tip_radius + tick.hand.fingers[i].tip_radius;
-    if (((*trial)[i].p_OF - p_OF).norm() < apart + kClearance) return false;
+    if (((*trial)[i].p_OF - p_OF).norm() < apart + tick.gait.landing_clearance) return false;
   }
   landing.p_OC = surface.p_O;
   landing.p_OF = p_OF;
@@ -75,12 +70,12 @@ bool StancePlan::Move(const ControlTick& tick, int finger, Landings* trial) {
 }
 
 bool StancePlan::Step(const ControlTick& tick) {
-  if (margin_ >= tick.gait.margin_wanted || trials_ >= kTrials) return true;
+  if (margin_ >= tick.gait.margin_wanted || trials_ >= tick.gait.stance_trials) return true;
   ++trials_;
   Landings trial = best_;
   bool moved = false;
   for (int i : tick.grasp.without(leaves_))
-    if (random_.Uniform() < kMoves) moved |= Move(tick, i, &trial);
+    if (random_.Uniform() < tick.gait.stance_moves) moved |= Move(tick, i, &trial);
   if (!moved) return false;
   const double margin = MarginOf(tick, trial);
   if (margin <= margin_) return false;

@@ -6,7 +6,6 @@ namespace regrasp {
 namespace {
 
 constexpr std::uint64_t kStream = 2000;
-constexpr double kStep = 0.0015;  // standard deviation of a trial step per axis [m]
 
 }  // namespace
 
@@ -21,12 +20,13 @@ void StanceSearch::Start(const Stance& first, const Stance& stance, FingerSet fi
   random_ = RandomStream(seed, kStream);
 }
 
-void StanceSearch::Step(const Vector3d& weight, double mu, double torque_scale, double max_force) {
+void StanceSearch::Step(const Vector3d& weight, double mu, double torque_scale, double max_force,
+                        double step_size) {
   Stance trial = best_;
   if (evaluations_ > 0) {
     for (std::size_t i = 0; i < trial.size(); ++i) {
       if (static_cast<int>(i) == without_) continue;
-      const Vector3d step = TangentPart(kStep * random_.Normal3(), trial[i].normal_W);
+      const Vector3d step = TangentPart(step_size * random_.Normal3(), trial[i].normal_W);
       const StanceContact moved = Shifted(trial[i], step);
       if ((moved.p_OC - first_[i].p_OC).norm() <= max_shift_) trial[i] = moved;
     }

@@ -18,7 +18,8 @@ class StanceSearch {
   void Start(const Stance& first, const Stance& stance, FingerSet fingers, int without,
              double max_shift, std::uint64_t seed);
   /// One evaluation. weight [N]; torque_scale [m]; max_force [N].
-  void Step(const Vector3d& weight, double mu, double torque_scale, double max_force);
+  void Step(const Vector3d& weight, double mu, double torque_scale, double max_force,
+            double step_size);
   const Stance& stance() const { return best_; }
   double margin() const { return margin_; }  ///< of stance(); < 0 before the first step [N]
   int evaluations() const { return evaluations_; }

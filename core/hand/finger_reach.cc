@@ -9,8 +9,6 @@ constexpr double kDamping2 = 1e-6;     // of the pseudo-inverse [m²]
 constexpr double kClose = 2e-4;        // the tip is there [m]
 constexpr double kLongestStep = 0.35;  // per joint and step [rad]
 constexpr double kTurnStep = 0.06;     // of the object [rad]
-constexpr double kMiddlePull = 0.15;   // of the way to the middle of the range, in the null space
-constexpr double kTolerance = 0.002;   // a finger this far behind no longer follows [m]
 
 Bone BoneOf(const Link& link, const Isometry3d& X_WL) {
   for (const Shape& shape : link.shapes)
@@ -106,19 +104,20 @@ FingerVector AnglesOf(const HandModel& hand, int finger, const JointVector& q) {
 }
 
 FingerPosture ReachFor(const HandModel& hand, int finger, const FingerPosture& from,
-                       const Vector3d& p_WF, double margin, int steps) {
+                       const Vector3d& p_WF, double margin, int steps, const ReachRule& rule) {
   FingerPosture posture = from;
   for (int i = 0; i < steps; ++i) {
     const Vector3d error = p_WF - posture.p_WF;
     if (error.squaredNorm() < kClose * kClose) break;
-    posture =
-        PostureAt(hand, finger, Stepped(hand, finger, posture, error, margin, kMiddlePull * 0.5));
+    posture = PostureAt(hand, finger,
+                        Stepped(hand, finger, posture, error, margin, rule.middle_pull * 0.5));
   }
   return posture;
 }
 
 double MotionReserve(const HandModel& hand, int finger, const FingerPosture& from,
-                     const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most) {
+                     const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most,
+                     const ReachRule& rule) {
   if (axis_W.isZero(0)) return most;
   const auto& joints = hand.fingers[finger].joints;
   FingerPosture posture = from;
@@ -129,8 +128,8 @@ double MotionReserve(const HandModel& hand, int finger, const FingerPosture& fro
     const FingerVector before = posture.q;
     posture = PostureAt(
         hand, finger,
-        Stepped(hand, finger, posture, p_WO + r - posture.p_WF, -kLongestStep, kMiddlePull));
-    if ((p_WO + r - posture.p_WF).norm() > kTolerance) return angle;
+        Stepped(hand, finger, posture, p_WO + r - posture.p_WF, -kLongestStep, rule.middle_pull));
+    if ((p_WO + r - posture.p_WF).norm() > rule.tolerance) return angle;
     double share = 1;  // of this step, until the first joint comes too near to its limit
     for (std::size_t k = 0; k < joints.size(); ++k) {
       const Joint& joint = hand.joints[joints[k]];

@@ -5,6 +5,7 @@
 
 #include "core/common/fixed_vector.h"
 #include "core/hand/kinematics.h"
+#include "core/hand/reach_rule.h"
 
 namespace regrasp {
 
@@ -36,14 +37,15 @@ FingerVector AnglesOf(const HandModel& hand, int finger, const JointVector& q);
 /// Damped least squares from `from.q` until the fingertip centre is at `p_WF`, joints kept `margin`
 /// [rad] inside their limits; `steps` at most. The posture reached; its p_WF tells what is missing.
 FingerPosture ReachFor(const HandModel& hand, int finger, const FingerPosture& from,
-                       const Vector3d& p_WF, double margin, int steps);
+                       const Vector3d& p_WF, double margin, int steps, const ReachRule& rule = {});
 
 /// Motion reserve [rad]: how far the object can turn about `axis_W` (unit, sense included) through
 /// `p_WO` with this finger following, until one of its joints comes within `margin` [rad] of its
 /// limit: q += J⁺ (ω × r) in small steps, with a pull away from the limits in the null space. At
 /// most `most`, which is also that of no axis (zero).
 double MotionReserve(const HandModel& hand, int finger, const FingerPosture& from,
-                     const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most);
+                     const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most,
+                     const ReachRule& rule = {});
 
 /// Distance between the surfaces of two links; negative where they overlap [m].
 double Gap(const Bone& one, const Bone& two);

@@ -1,16 +1,10 @@
 #include "core/session/session_impl.h"
 
 namespace regrasp {
-namespace {
-
-constexpr int kInterval = 5;          // ticks from one look at a finger to the next
-constexpr double kSettled_s = 0.040;  // the contact filters have followed
-constexpr double kLeastForce = 0.1;   // [N]
-
-}  // namespace
 
 void Session::Impl::Feel() {
-  if (tick % kInterval != 0) return;
+  const ShapeParameters& shape = parameters.shape;
+  if (tick % Ticks(shape.interval_s, dt) != 0) return;
   if (!parameters.gait.map) felt.Reset();
   const Estimate& e = estimator.estimate();
   // The sensed pose lags behind the contacts, which move with the joint angles.
@@ -18,14 +12,15 @@ void Session::Impl::Feel() {
   const Quaterniond q_OW = (FromRotationVector(late_s * motion.w_W) * e.q_WO).conjugate();
   const Vector3d p_WO = e.p_WO + late_s * motion.v_W;
   for (const FingerEstimate& f : e.fingers)
-    if (f.in_contact && f.force >= kLeastForce && f.ticks_in_contact * dt >= kSettled_s)
+    if (f.in_contact && f.force >= shape.least_force && f.ticks_in_contact * dt >= shape.settled_s)
       felt.Add(q_OW * (f.p_WC - p_WO), q_OW * f.normal_W);
 }
 
 void Session::Impl::FeelFriction() {
-  const bool known = felt_friction.known();
-  felt_friction.Update(estimator.estimate(), tasks, controller.commanded_forces(), dt);
-  if (known || !felt_friction.known()) return;
+  const bool known = felt_friction.known(parameters.control);
+  felt_friction.Update(estimator.estimate(), tasks, controller.commanded_forces(),
+                       parameters.control, dt);
+  if (known || !felt_friction.known(parameters.control)) return;
   CountOn();
   log.Emit(tick, EventKind::kFriction, -1, felt_friction.felt(),
            "friction felt: %.2f; the controller counts on %.2f", felt_friction.felt(),
@@ -34,9 +29,10 @@ void Session::Impl::FeelFriction() {
 
 void Session::Impl::CountOn() {
   control = parameters.control;
+  felt.Use(parameters.shape);
   if (parameters.gait.plan && parameters.gait.friction_share > 0)
     control.friction_estimate =
-        felt_friction.Counted(parameters.gait.friction_share, control.friction_estimate);
+        felt_friction.Counted(parameters.gait.friction_share, parameters.control);
 }
 
 }  // namespace regrasp

@@ -2,79 +2,18 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
-#include <type_traits>
 
 #include "core/hand/scenario.h"
+#include "core/session/parameter_row.h"
 
 namespace regrasp {
 namespace {
 
 using P = Parameters;
+using parameter_row::Row;
 constexpr std::string_view kOurs = "ours";
 constexpr std::string_view kMeasured = "ours, measured";
 constexpr std::string_view kPaper = "paper";
-
-/// Type, get and set of a row follow from the member that `Member` points at.
-template <typename Member>
-constexpr ParameterInfo RowOf(std::string_view name, std::string_view meaning,
-                              std::string_view source, Member) {
-  using T = std::remove_pointer_t<std::invoke_result_t<Member, Parameters&>>;
-  ParameterInfo info;
-  info.name = name;
-  info.type = std::is_enum_v<T>             ? ParameterType::kWord
-              : std::is_same_v<T, bool>     ? ParameterType::kBoolean
-              : std::is_same_v<T, int>      ? ParameterType::kInteger
-              : std::is_same_v<T, Vector3d> ? ParameterType::kVector
-                                            : ParameterType::kReal;
-  info.max = 1;
-  info.meaning = meaning;
-  info.source = source;
-  info.get = [](const Parameters& parameters) -> Vector3d {
-    const T& value = *Member{}(const_cast<Parameters&>(parameters));  // only read
-    if constexpr (std::is_same_v<T, Vector3d>)
-      return value;
-    else
-      return {static_cast<double>(value), 0, 0};
-  };
-  info.set = [](Parameters* parameters, const Vector3d& value) {
-    if constexpr (std::is_same_v<T, Vector3d>)
-      *Member{}(*parameters) = value;
-    else if constexpr (std::is_enum_v<T>)
-      *Member{}(*parameters) = static_cast<T>(static_cast<int>(value.x()));
-    else
-      *Member{}(*parameters) = static_cast<T>(value.x());
-  };
-  return info;
-}
-
-/// A real, an integer or a vector.
-template <typename Member>
-constexpr ParameterInfo Row(std::string_view name, std::string_view unit, double min, double max,
-                            std::string_view meaning, std::string_view source, Member member) {
-  ParameterInfo info = RowOf(name, meaning, source, member);
-  info.unit = unit;
-  info.min = min;
-  info.max = max;
-  return info;
-}
-
-/// A word.
-template <std::size_t N, typename Member>
-constexpr ParameterInfo Row(std::string_view name, const std::array<std::string_view, N>& words,
-                            std::string_view meaning, std::string_view source, Member member) {
-  ParameterInfo info = RowOf(name, meaning, source, member);
-  info.words = words;
-  info.max = static_cast<double>(N - 1);
-  return info;
-}
-
-/// A boolean.
-template <typename Member>
-constexpr ParameterInfo Row(std::string_view name, std::string_view meaning,
-                            std::string_view source, Member member) {
-  return RowOf(name, meaning, source, member);
-}
 
 // clang-format off
 // name | unit | min | max | meaning | source of the default | member.
@@ -282,6 +221,55 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("start.joint_sigma_rad", "rad", 0, 0.2, "Spread of the start posture over seeds, per joint; takes effect at reset.", kOurs, [](P& p) { return &p.start.joint_sigma_rad; }),
   Row("start.object_sigma_m", "m", 0, 0.02, "Spread of the object's start position over seeds, per axis; takes effect at reset.", kOurs, [](P& p) { return &p.start.object_sigma_m; }),
   Row("control.fingertip_stiffness", "N/m", 100, 1e9, "A fingertip is pressed in by its normal force over this; places the contact on it.", "the hand's: docs/world.md", [](P& p) { return &p.control.fingertip_stiffness; }),
+  Row("control.feel_settled_s", "s", 0, 5, "Friction is felt by a finger that has slid for so long.", kOurs, [](P& p) { return &p.control.feel_settled_s; }),
+  Row("control.feel_speed", "m/s", 0, 0.05, "... at no less than this speed.", kOurs, [](P& p) { return &p.control.feel_speed; }),
+  Row("control.feel_force", "N", 0.01, 5, "... pressed on with no less than this force.", kOurs, [](P& p) { return &p.control.feel_force; }),
+  Row("control.feel_memory_s", "s", 0.01, 100, "It is the mean over about so much of the last sliding.", kOurs, [](P& p) { return &p.control.feel_memory_s; }),
+  Row("control.feel_enough_s", "s", 0.001, 100, "It counts once it was felt for so long.", kOurs, [](P& p) { return &p.control.feel_enough_s; }),
+  Row("control.feel_least", "", 0.05, 1, "Least coefficient that is counted on after that.", kOurs, [](P& p) { return &p.control.feel_least; }),
+  Row("control.stability_hysteresis", "", 1, 2, "Criterion switched: stability stays the objective up to so much of its threshold.", kOurs, [](P& p) { return &p.control.stability_hysteresis; }),
+  Row("exploration.wall_return", "1/s", 0, 100, "Speed with which a finger leaves what lies behind a wall, per depth.", kOurs, [](P& p) { return &p.exploration.wall_return; }),
+  Row("gait.there_on_object", "m", 1e-06, 0.01, "Hop: a target on the object is reached this near, as noisy as the object's pose.", kOurs, [](P& p) { return &p.gait.there_on_object; }),
+  Row("gait.air_limit_s", "s", 0.05, 20, "Hop over the felt surface: the finger comes down anyway after so long.", kOurs, [](P& p) { return &p.gait.air_limit_s; }),
+  Row("gait.clear_share", "", 0, 2, "Hop over the felt surface: it crosses this share of gait.lift_height above it.", kOurs, [](P& p) { return &p.gait.clear_share; }),
+  Row("gait.least_slope", "", 0.1, 1, "Cosine between the felt normal and the direction from the centre: a steeper surface counts as at this one.", kOurs, [](P& p) { return &p.gait.least_slope; }),
+  Row("gait.rise_most", "m", 0, 0.05, "Hop: a steep surface lifts the finger by at most so much more.", kOurs, [](P& p) { return &p.gait.rise_most; }),
+  Row("gait.seek_way", "m", 0, 0.1, "Hop: a finger that has missed the surface looks so far inwards for it.", kOurs, [](P& p) { return &p.gait.seek_way; }),
+  Row("gait.middle_pull", "", 0, 1, "Planned: share of the way to the middle of a joint's range, taken where the tip does not care.", kOurs, [](P& p) { return &p.gait.reach.middle_pull; }),
+  Row("gait.follow_tolerance", "m", 0.0001, 0.02, "Planned: a finger this far behind the turning object no longer follows.", kOurs, [](P& p) { return &p.gait.reach.tolerance; }),
+  Row("gait.landing_limit_margin", "rad", 0, 0.5, "Planned landings: distance of a joint from its limit there.", kOurs, [](P& p) { return &p.gait.landing_limit_margin; }),
+  Row("gait.landing_missing", "m", 0, 0.02, "Planned: a fingertip this far from its target does not reach it.", kOurs, [](P& p) { return &p.gait.landing_missing; }),
+  Row("gait.landing_far", "m", 0.0005, 0.1, "Planned landings: distance from home that costs gait.landing_far_cost.", kOurs, [](P& p) { return &p.gait.landing_far; }),
+  Row("gait.landing_far_cost", "", 0, 10, "Planned landings: in the landing's score.", kOurs, [](P& p) { return &p.gait.landing_far_cost; }),
+  Row("gait.landing_clearance", "m", 0, 0.02, "Planned: gap wanted between fingers.", kOurs, [](P& p) { return &p.gait.landing_clearance; }),
+  Row("gait.landing_overlap", "m", 0, 0.02, "Planned landings: a finger that overlaps with another by more does not get there.", kOurs, [](P& p) { return &p.gait.landing_overlap; }),
+  Row("gait.landing_known", "rad", 0, 3, "Planned landings: farther from all that was felt the surface is unknown.", kOurs, [](P& p) { return &p.gait.landing_known; }),
+  Row("gait.landing_unknown_cost", "1/rad", 0, 10, "Planned landings: cost in score of a place, per angle from what was felt.", kOurs, [](P& p) { return &p.gait.landing_unknown_cost; }),
+  Row("gait.landing_unknown_share", "", 0, 2, "Planned landings: the normal may be off by this share of that angle, which costs load margin.", kOurs, [](P& p) { return &p.gait.landing_unknown_share; }),
+  Row("gait.landing_penalty", "", 0, 100, "Planned landings: penalty in score where the finger does not reach, faces the surface with its side or comes too near.", kOurs, [](P& p) { return &p.gait.landing_penalty; }),
+  Row("gait.link_clearance", "m", 0, 0.02, "Planned landings: gap wanted between the link before the tip and the object.", kOurs, [](P& p) { return &p.gait.link_clearance; }),
+  Row("gait.link_touches", "m", 0.0001, 0.02, "Planned landings: so much less of it costs gait.landing_penalty.", kOurs, [](P& p) { return &p.gait.link_touches; }),
+  Row("gait.stance_trials", "", 1, 100000, "Planned stances: trials of the search.", kOurs, [](P& p) { return &p.gait.stance_trials; }),
+  Row("gait.stance_step", "m", 0.0001, 0.02, "Planned stances: standard deviation of a trial's step, per axis.", kOurs, [](P& p) { return &p.gait.stance_step; }),
+  Row("gait.stance_moves", "", 0, 1, "Planned stances: share of the contacts that a trial moves.", kOurs, [](P& p) { return &p.gait.stance_moves; }),
+  Row("gait.stance_unknown", "rad", 0, 3, "Planned stances: no contact is farther from all that was felt.", kOurs, [](P& p) { return &p.gait.stance_unknown; }),
+  Row("gait.stance_limit_margin", "rad", 0, 0.5, "Planned stances: distance of a joint from its limit there.", kOurs, [](P& p) { return &p.gait.stance_limit_margin; }),
+  Row("gait.search_trials", "", 1, 100000, "By the table: stances looked at to let the opposing finger leave.", kOurs, [](P& p) { return &p.gait.search_trials; }),
+  Row("gait.search_interval_s", "s", 0.001, 1, "By the table: time from one to the next.", kOurs, [](P& p) { return &p.gait.search_interval_s; }),
+  Row("gait.search_step", "m", 0.0001, 0.02, "By the table: standard deviation of a stance's step, per axis.", kOurs, [](P& p) { return &p.gait.search_step; }),
+  Row("shape.interval_s", "s", 0.001, 1, "Time from one contact felt by a finger to the next.", kOurs, [](P& p) { return &p.shape.interval_s; }),
+  Row("shape.settled_s", "s", 0, 5, "A finger feels the surface after so long in contact.", kOurs, [](P& p) { return &p.shape.settled_s; }),
+  Row("shape.least_force", "N", 0, 5, "... with no less than this force.", kOurs, [](P& p) { return &p.shape.least_force; }),
+  Row("shape.least_cosine", "", 0.01, 1, "... where the normal is no steeper against the direction from the centre than this cosine.", kOurs, [](P& p) { return &p.shape.least_cosine; }),
+  Row("shape.default_radius", "m", 0.001, 0.5, "Radius of an object of which nothing was felt.", kOurs, [](P& p) { return &p.shape.default_radius; }),
+  Row("shape.full", "", 1, 100000, "Contacts that make a direction fully trusted.", kOurs, [](P& p) { return &p.shape.full; }),
+  Row("shape.memory", "", 1, 100000, "A direction is the mean of about so many last contacts.", kOurs, [](P& p) { return &p.shape.memory; }),
+  Row("shape.near", "rad", 0.001, 1, "Angle within which a felt direction counts in full (theta_0).", kOurs, [](P& p) { return &p.shape.near; }),
+  Row("shape.slope_reach2", "rad2", 0.0001, 10, "Square of the angle over which its slope is believed (theta_s).", kOurs, [](P& p) { return &p.shape.slope_reach2; }),
+  Row("shape.turn_reach2", "rad2", 0.0001, 10, "Square of the angle beyond which its normal turns with the direction.", kOurs, [](P& p) { return &p.shape.turn_reach2; }),
+  Row("shape.steepest", "", 0.01, 10, "Steepest slope that is believed.", kOurs, [](P& p) { return &p.shape.steepest; }),
+  Row("shape.prior_angle", "rad", 0.01, 3, "The mean radius counts as if felt at this angle.", kOurs, [](P& p) { return &p.shape.prior_angle; }),
+  Row("shape.bend_reach", "rad", 0.001, 1, "Normals within about this angle tell how the surface bends.", kOurs, [](P& p) { return &p.shape.bend_reach; }),
 });
 // clang-format on
 

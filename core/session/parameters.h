@@ -13,6 +13,7 @@
 #include "core/control/control_parameters.h"
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"
+#include "core/shape/shape_parameters.h"
 
 namespace regrasp {
 
@@ -35,6 +36,7 @@ struct Parameters {
   ControlParameters control;
   ExplorationParameters exploration;
   GaitParameters gait;
+  ShapeParameters shape;
   template <typename V>
   void Fields(V& v);
 };

@@ -12,7 +12,7 @@ ShapeErrors JudgeShape(const FeltSurface& felt, const TrueSurface& truth) {
   std::array<double, FeltSurface::kCells> angles;
   for (int i = 0; i < FeltSurface::kCells; ++i) {
     const FeltSurface::Cell& cell = felt.cell(i);
-    if (cell.count < FeltSurface::kFull) continue;
+    if (cell.count < felt.parameters().full) continue;
     const SurfacePoint point = felt.At(cell.direction_sum);
     const TrueSurface::Nearest nearest = truth.At(point.p_O);
     errors.rms_m += nearest.distance * nearest.distance;

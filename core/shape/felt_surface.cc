@@ -7,25 +7,20 @@
 namespace regrasp {
 namespace {
 
-constexpr double kNear2 = 0.07 * 0.07;  // θ_0² [rad²]
-constexpr double kSlopeReach2 = 0.18;   // θ_s²: so far a cell's slope is believed [rad²]
-constexpr double kTurnReach2 = 0.05;    // farther from its cell a normal turns with the direction
-constexpr double kSteepest = 1.2;       // |g_i| at most
-constexpr double kPriorAngle2 = 0.25;   // the mean counts as if felt this far away [rad²]
-constexpr double kLeastCos = 0.15;      // n . u of a contact that can be on a star-shaped body
 constexpr double kLeastRadius = 0.001;  // [m]
-constexpr double kBendReach2 = 0.10 * 0.10;  // normals within about this are compared [rad²]
 
-double Weight(double angle2) {
-  const double x = angle2 + kNear2;
-  return 1.0 / (x * x);
-}
+double Square(double x) { return x * x; }
 
 /// Equal angles instead of equal lengths on the cube's face, and back; both on [-1, 1].
 double ToGrid(double u) { return std::atan(u) * (4.0 / std::numbers::pi); }
 double FromGrid(double s) { return std::tan(s * (std::numbers::pi / 4.0)); }
 
 }  // namespace
+
+double FeltSurface::Weight(double angle2) const {
+  const double x = angle2 + Square(parameters_.near);
+  return 1.0 / (x * x);
+}
 
 int FeltSurface::CellOf(const Vector3d& d) {
   int axis = 0;
@@ -51,12 +46,12 @@ Vector3d FeltSurface::CellDirection(int i) {
 
 void FeltSurface::Add(const Vector3d& p_O, const Vector3d& normal_O) {
   const double radius = p_O.norm();
-  if (!(radius > kLeastRadius) || !(normal_O.dot(p_O) > kLeastCos * radius)) return;
+  if (!(radius > kLeastRadius) || !(normal_O.dot(p_O) > parameters_.least_cosine * radius)) return;
   const int index = CellOf(p_O);
   Cell& cell = cells_[index];
   if (cell.count == 0) touched_[num_touched_++] = static_cast<std::int16_t>(index);
   log_radius_sum_ -= cell.log_radius;
-  cell.count = std::min(cell.count + 1, kMemory);
+  cell.count = std::min(cell.count + 1, parameters_.memory);
   const double gain = 1.0 / cell.count;
   cell.log_radius += gain * (std::log(radius) - cell.log_radius);
   cell.direction_sum += gain * (p_O / radius - cell.direction_sum);
@@ -68,13 +63,14 @@ SurfacePoint FeltSurface::At(const Vector3d& d_O) const {
   const Vector3d d = d_O.normalized();
   SurfacePoint result;
   if (num_touched_ == 0) {
-    result.p_O = kDefaultRadius * d;
+    result.p_O = parameters_.default_radius * d;
     result.normal_O = d;
     result.unknown = result.bend = std::numbers::pi;
     return result;
   }
   const double mean = log_radius_sum_ / num_touched_;
-  double weights = Weight(kPriorAngle2), log_radius = weights * mean;
+  const double bend_reach2 = Square(parameters_.bend_reach);
+  double weights = Weight(Square(parameters_.prior_angle)), log_radius = weights * mean;
   Vector3d normal = weights * d, near_normals = Vector3d::Zero();
   double near_weights = 0, nearest2 = 4.0;
   for (int k = 0; k < num_touched_; ++k) {
@@ -82,10 +78,10 @@ SurfacePoint FeltSurface::At(const Vector3d& d_O) const {
     const Vector3d u = cell.direction_sum.normalized();
     const double cosine = d.dot(u);
     const double angle2 = 2.0 * (1.0 - cosine);  // of the chord; as good as the angle nearby
-    const double confidence = std::min(1.0, cell.count / static_cast<double>(kFull));
+    const double confidence = std::min(1.0, cell.count / static_cast<double>(parameters_.full));
     const double w = confidence * Weight(angle2);
     weights += w;
-    if (cell.count >= kFull / 4) nearest2 = std::min(nearest2, angle2);
+    if (cell.count >= parameters_.full / 4) nearest2 = std::min(nearest2, angle2);
     if (angle2 > 1.0) {  // too far for its slope and its normal
       log_radius += w * cell.log_radius;
       normal += w * d;
@@ -95,12 +91,13 @@ SurfacePoint FeltSurface::At(const Vector3d& d_O) const {
     const double along = n.dot(u);
     Vector3d slope = -(n - along * u) / along;
     const double steep = slope.norm();
-    if (steep > kSteepest) slope *= kSteepest / steep;
-    log_radius += w * (cell.log_radius + slope.dot(d) * std::exp(-angle2 / kSlopeReach2));
-    const double turn = 1.0 - std::exp(-angle2 / kTurnReach2);
+    if (steep > parameters_.steepest) slope *= parameters_.steepest / steep;
+    log_radius +=
+        w * (cell.log_radius + slope.dot(d) * std::exp(-angle2 / parameters_.slope_reach2));
+    const double turn = 1.0 - std::exp(-angle2 / parameters_.turn_reach2);
     const Vector3d turned = n + turn * (n.dot(d) > 0 ? 1.0 : 0.0) * (d - u);
     normal += w * turned.normalized();
-    if (angle2 < kBendReach2) {
+    if (angle2 < bend_reach2) {
       near_weights += confidence;
       near_normals += confidence * cell.normal_sum;  // shorter than 1 where it bends inside
     }
@@ -115,15 +112,16 @@ SurfacePoint FeltSurface::At(const Vector3d& d_O) const {
 
 double FeltSurface::BendAt(const Vector3d& d_O) const {
   const Vector3d d = d_O.normalized();
+  const double bend_reach2 = Square(parameters_.bend_reach);
   Vector3d normals = Vector3d::Zero();
   double weights = 0;
   for (int k = 0; k < num_touched_; ++k) {
     const Cell& cell = cells_[touched_[k]];
     // The sum is shorter than a unit vector by no more than a cell's width: near enough to sort
     // out.
-    if (d.dot(cell.direction_sum) < 1.0 - kBendReach2) continue;
-    if (2.0 * (1.0 - d.dot(cell.direction_sum.normalized())) >= kBendReach2) continue;
-    const double confidence = std::min(1.0, cell.count / static_cast<double>(kFull));
+    if (d.dot(cell.direction_sum) < 1.0 - bend_reach2) continue;
+    if (2.0 * (1.0 - d.dot(cell.direction_sum.normalized())) >= bend_reach2) continue;
+    const double confidence = std::min(1.0, cell.count / static_cast<double>(parameters_.full));
     weights += confidence;
     normals += confidence * cell.normal_sum;
   }
@@ -131,7 +129,7 @@ double FeltSurface::BendAt(const Vector3d& d_O) const {
 }
 
 double FeltSurface::mean_radius() const {
-  return num_touched_ == 0 ? kDefaultRadius : std::exp(log_radius_sum_ / num_touched_);
+  return num_touched_ == 0 ? parameters_.default_radius : std::exp(log_radius_sum_ / num_touched_);
 }
 
 }  // namespace regrasp

@@ -17,6 +17,7 @@
 
 #include "core/common/fields.h"
 #include "core/common/frames.h"
+#include "core/shape/shape_parameters.h"
 
 namespace regrasp {
 
@@ -32,15 +33,13 @@ class FeltSurface {
  public:
   static constexpr int kGrid = 12;  ///< cells along an edge of the cube: 7.5 deg each
   static constexpr int kCells = 6 * kGrid * kGrid;
-  static constexpr int kFull = 20;     ///< samples that make a cell fully trusted
-  static constexpr int kMemory = 150;  ///< a cell is the mean of about so many last samples
-  static constexpr double kDefaultRadius = 0.025;  ///< before anything is felt [m]
+  static constexpr int kMostSamples = 100000;  ///< shape.memory at most
 
   struct Cell {
     Vector3d direction_sum = Vector3d::Zero();  ///< of unit vectors: its direction is u_i
     Vector3d normal_sum = Vector3d::Zero();
     double log_radius = 0;
-    int count = 0;  ///< samples, at most kMemory
+    int count = 0;  ///< samples, at most shape.memory
 
     bool operator==(const Cell&) const = default;
     template <typename V>
@@ -48,10 +47,13 @@ class FeltSurface {
       v("direction_sum", direction_sum);
       v("normal_sum", normal_sum);
       v("log_radius", log_radius);
-      v("count", count, FieldRange{1, kMemory});
+      v("count", count, FieldRange{1, kMostSamples});
     }
   };
 
+  /// What it goes by from now on; what was felt stays.
+  void Use(const ShapeParameters& parameters) { parameters_ = parameters; }
+  const ShapeParameters& parameters() const { return parameters_; }
   /// A contact: point [m] and outward unit normal, in O. Left out where the point is nearer than
   /// 1 mm to the centre, or the normal does not point away from it: no star-shaped body has such.
   void Add(const Vector3d& p_O, const Vector3d& normal_O);
@@ -59,7 +61,11 @@ class FeltSurface {
   SurfacePoint At(const Vector3d& d_O) const;
   /// SurfacePoint::bend alone, at a tenth of the cost; 0 where nothing was felt nearby.
   double BendAt(const Vector3d& d_O) const;
-  void Reset() { *this = FeltSurface(); }
+  void Reset() {
+    const ShapeParameters parameters = parameters_;
+    *this = FeltSurface();
+    parameters_ = parameters;
+  }
 
   int touched_cells() const { return num_touched_; }
   /// Share of all directions whose cell has been felt, 0 to 1.
@@ -83,6 +89,9 @@ class FeltSurface {
   }
 
  private:
+  double Weight(double angle2) const;
+
+  ShapeParameters parameters_;  // the session's, not part of its state
   std::array<Cell, kCells> cells_{};
   std::array<std::int16_t, kCells> touched_{};  // indices of felt cells, in order of their first
   int num_touched_ = 0;

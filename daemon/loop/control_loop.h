@@ -189,7 +189,7 @@ class ControlLoop {
   TickTimes tick_times_, lateness_;
 
   std::uint64_t posted_ = 0;  // I/O thread
-  Ring<Waiting, 256> requests_;
+  Ring<Waiting, 512> requests_;
   Ring<Published, 128> frames_;
   Ring<PublishedEvent, 1024> events_;
   Ring<JobRecord, 256> jobs_;

@@ -9,7 +9,7 @@ from harness import SOURCE
 MAP = SOURCE / "docs" / "paper_map.md"
 IDENTIFIER = re.compile(r"^[A-Za-z_]\w*(::~?\w+)*$")
 FILE = re.compile(r"^[\w/]*\w+\.(\{[\w,]+\}|\w+)$")
-PARAMETER = re.compile(r"^(object|start|control|exploration|gait)\.\w+")
+PARAMETER = re.compile(r"^(object|start|control|exploration|gait|shape)\.\w+")
 # What is typed, not what is in the source: other tests run it.
 TYPED = re.compile(r"^(regrasp|claims|plot|build/|--|checkpoint) ?")
 SUFFIXES = {"h", "cc", "py", "urdf", "md"}
@@ -105,6 +105,15 @@ class PaperMap(unittest.TestCase):
                 if IDENTIFIER.match(word) and not TYPED.match(word):
                     for part in word.split("::"):
                         self.assertRegex(everything, rf"\b{part}\b", f"{MAP.name}:{number}")
+
+    def test_contributing_says_where_things_are(self):
+        text = (SOURCE / "CONTRIBUTING.md").read_text()
+        rows = re.findall(r"^\| (.*?) \| `([^`]*)`.*? \| (`.*`) \|$", text.split("### Where is")[1].split("\n## ")[0], re.M)
+        self.assertGreater(len(rows), 8)
+        for what, path, words in rows:
+            for word in re.findall(r"`([^`]*)`", words):
+                with self.subTest(what):
+                    self.assertIn(word, (SOURCE / path).read_text())
 
     def test_links_lead_somewhere(self):
         for target in re.findall(r"\]\(([^)#]+)\)", MAP.read_text()):

@@ -27,23 +27,23 @@ struct Scene {
   }
   void Run(double seconds, FeltFriction* friction) const {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k)
-      friction->Update(estimate, tasks, commanded, kDt);
+      friction->Update(estimate, tasks, commanded, ControlParameters(), kDt);
   }
 };
 
 TEST(FeltFriction, IsTheTangentialForceOfASlidingFingerPerNormalForce) {
   FeltFriction friction;
   Scene(0.01, 0.18).Run(0.3, &friction);
-  ASSERT_TRUE(friction.known());
+  ASSERT_TRUE(friction.known(ControlParameters()));
   EXPECT_NEAR(friction.felt(), 0.6, 1e-9);
-  EXPECT_NEAR(friction.Counted(0.85, 0.5), 0.51, 1e-9);
+  EXPECT_NEAR(friction.Counted(0.85, ControlParameters()), 0.51, 1e-9);
 }
 
 TEST(FeltFriction, CountsOnWhatItWasToldUntilFingersHaveSlidForLongEnough) {
   FeltFriction friction;
   Scene(0.01, 0.18).Run(0.1, &friction);
-  EXPECT_FALSE(friction.known());
-  EXPECT_EQ(friction.Counted(0.85, 0.5), 0.5);
+  EXPECT_FALSE(friction.known(ControlParameters()));
+  EXPECT_EQ(friction.Counted(0.85, ControlParameters()), ControlParameters().friction_estimate);
 }
 
 TEST(FeltFriction, AFingerThatRestsOrHardlyTouchesTellsNothing) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/gait/gait_parameters.h"
 #include "core/gait/stance_search.h"
 #include "core/hand/scenario.h"
 #include "core/quality/load_margin.h"
@@ -153,9 +154,9 @@ TEST(Stance, SearchRaisesTheMarginWithinItsBound) {
   const Vector3d weight(0, 0, -0.785);
   StanceSearch search;
   search.Start(stance, stance, FingerSet::First(5), 4, 0.006, 7);
-  search.Step(weight, 0.5, 0.025, 4.0);
+  search.Step(weight, 0.5, 0.025, 4.0, GaitParameters().search_step);
   const double first = search.margin();
-  for (int k = 0; k < 200; ++k) search.Step(weight, 0.5, 0.025, 4.0);
+  for (int k = 0; k < 200; ++k) search.Step(weight, 0.5, 0.025, 4.0, GaitParameters().search_step);
   EXPECT_GT(search.margin(), first);
   for (std::size_t i = 0; i < stance.size(); ++i)
     EXPECT_LE((search.stance()[i].p_OC - stance[i].p_OC).norm(), 0.006 + 1e-12);

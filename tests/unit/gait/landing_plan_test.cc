@@ -4,38 +4,20 @@
 
 #include <cmath>
 
-#include "core/exploration/exploration_parameters.h"
-#include "core/gait/gait_parameters.h"
 #include "core/gait/sure_grasp.h"
-#include "tests/unit/control/held_sphere.h"
+#include "tests/unit/gait/held_tick.h"
 
 namespace regrasp {
 namespace {
 
 constexpr double kRadius = 0.025;
 
-struct LandingPlanTest : testing::Test {
-  LoadedScenario model = ShadowHand();
-  const HandModel& hand = model.hand;
-  Estimate estimate = TouchingEstimate(hand, GraspPosture(hand));
-  FeltSurface felt;
-  LoadMargins margins;
-  Vector3d gravity_W = model.scenario.gravity_W;
-  ControlParameters control;
-  ExplorationParameters exploration;
-  GaitParameters gait;
-
+struct LandingPlanTest : HeldTick {
   LandingPlanTest() {
     for (int i = 0; i < FeltSurface::kCells; ++i) {
       const Vector3d d = FeltSurface::CellDirection(i);
-      for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(kRadius * d, d);
+      for (int k = 0; k < ShapeParameters().full; ++k) felt.Add(kRadius * d, d);
     }
-  }
-  ControlTick Tick() {
-    return {hand,    estimate,    FingerSet::First(hand.num_fingers()),
-            margins, felt,        gravity_W,
-            control, exploration, gait,
-            1e-3};
   }
   LandingPlan::Request Home(int finger) {
     LandingPlan::Request request;
@@ -121,7 +103,7 @@ TEST_F(LandingPlanTest, KeepsOffGroundThatNobodyHasFelt) {
   for (int i = 0; i < FeltSurface::kCells; ++i) {
     const Vector3d d = FeltSurface::CellDirection(i);
     if (d.dot(side) > 0.05) continue;
-    for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(kRadius * d, d);
+    for (int k = 0; k < ShapeParameters().full; ++k) felt.Add(kRadius * d, d);
   }
   plan.Start(Home(ring));
   Plan(&plan);
@@ -237,7 +219,7 @@ TEST_F(LandingPlanTest, KeepsTheLinkBeforeTheTipOffTheObject) {
   for (int i = 0; i < FeltSurface::kCells; ++i) {
     const Vector3d d = FeltSurface::CellDirection(i);
     const bool near = d.dot(r.normalized()) > std::cos(0.35);
-    for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add((near ? bump : kRadius) * d, d);
+    for (int k = 0; k < ShapeParameters().full; ++k) felt.Add((near ? bump : kRadius) * d, d);
   }
   const double blocked = HeightOfMiddleLink(Tick(), first, free);
   ASSERT_LT(blocked, 0);

@@ -4,28 +4,15 @@
 
 #include <algorithm>
 
-#include "core/exploration/exploration_parameters.h"
-#include "core/gait/gait_parameters.h"
 #include "core/hand/finger_reach.h"
-#include "core/shape/felt_surface.h"
-#include "tests/unit/control/held_sphere.h"
+#include "tests/unit/gait/held_tick.h"
 
 namespace regrasp {
 namespace {
 
 const Vector3d kAxis_W = -Vector3d::UnitZ();
 
-struct TurnAlongTest : testing::Test {
-  LoadedScenario model = ShadowHand();
-  const HandModel& hand = model.hand;
-  FingerSet all = FingerSet::First(hand.num_fingers());
-  Estimate estimate = TouchingEstimate(hand, GraspPosture(hand));
-  FeltSurface felt;
-  LoadMargins margins;
-  Vector3d gravity_W = model.scenario.gravity_W;
-  ControlParameters control;
-  ExplorationParameters exploration;
-  GaitParameters gait;
+struct TurnAlongTest : HeldTick {
   ObjectWrench wrench;
   TurnAlong along;
 
@@ -33,8 +20,7 @@ struct TurnAlongTest : testing::Test {
 
   /// The speed that it comes to [rad/s].
   double Settled(FingerSet holds, double margin, double most) {
-    const ControlTick tick{hand,      estimate, all,         margins, felt,
-                           gravity_W, control,  exploration, gait,    1e-3};
+    const ControlTick tick = Tick();
     double speed = 0;
     for (int k = 0; k < 1000; ++k) {
       const double before = speed;

@@ -14,7 +14,7 @@ FeltSurface Ball(double radius) {
   FeltSurface felt;
   for (int i = 0; i < FeltSurface::kCells; ++i) {
     const Vector3d d = FeltSurface::CellDirection(i);
-    for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(radius * d, d);
+    for (int k = 0; k < ShapeParameters().full; ++k) felt.Add(radius * d, d);
   }
   return felt;
 }
@@ -44,7 +44,7 @@ TEST(FeltMesh, IsClosedAndFacesOutwards) {
 
 TEST(FeltMesh, TellsWhatIsUnknown) {
   FeltSurface felt;
-  for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add({0, 0, 0.02}, Vector3d::UnitZ());
+  for (int k = 0; k < ShapeParameters().full; ++k) felt.Add({0, 0, 0.02}, Vector3d::UnitZ());
   const FeltMesh mesh = MeshOf(felt, 0);
   EXPECT_NEAR(mesh.vertices.front().unknown, 0, 1e-6);                // the upper pole
   EXPECT_NEAR(mesh.vertices.back().unknown, std::numbers::pi, 1e-6);  // the lower one

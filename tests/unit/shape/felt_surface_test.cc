@@ -68,7 +68,7 @@ Errors Compare(const FeltSurface& felt, const Surface& surface, double known) {
 TEST(FeltSurface, KnowsNothingAtFirst) {
   const FeltSurface felt;
   const SurfacePoint point = felt.At({0, 0, 2});
-  EXPECT_EQ(point.p_O, Vector3d(0, 0, FeltSurface::kDefaultRadius));
+  EXPECT_EQ(point.p_O, Vector3d(0, 0, ShapeParameters().default_radius));
   EXPECT_EQ(point.normal_O, Vector3d::UnitZ());
   EXPECT_NEAR(point.unknown, M_PI, 1e-12);
   EXPECT_EQ(felt.touched_share(), 0);
@@ -108,7 +108,7 @@ TEST(FeltSurface, BendsAtAnEdgeAndNotOnAFlat) {
 TEST(FeltSurface, Forgets) {
   FeltSurface felt;
   for (int i = 0; i < 1000; ++i) felt.Add({0, 0, 0.030}, Vector3d::UnitZ());
-  for (int i = 0; i < 2 * FeltSurface::kMemory; ++i) felt.Add({0, 0, 0.025}, Vector3d::UnitZ());
+  for (int i = 0; i < 2 * ShapeParameters().memory; ++i) felt.Add({0, 0, 0.025}, Vector3d::UnitZ());
   EXPECT_NEAR(felt.At(Vector3d::UnitZ()).p_O.z(), 0.025, 0.005 * std::exp(-2) + 1e-4);
 }
 
