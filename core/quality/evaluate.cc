@@ -8,7 +8,6 @@
 
 #include "core/quality/epsilon.h"
 #include "core/quality/load_margin.h"
-#include "core/quality/stability.h"
 
 namespace regrasp {
 namespace {
@@ -70,15 +69,13 @@ EvaluateOutput Evaluate(const EvaluateInput& input) {
   for (GraspContact& contact : contacts) contact.inward_normal.normalize();
 
   EvaluateOutput out;
-  EpsilonSolver solver;
-  out.epsilon = solver.Compute(contacts, input.torque_scale, input.cone_edges);
-  out.force_closure = out.epsilon > 0.0;
-  if (contacts.size() * static_cast<std::size_t>(input.cone_edges + 2) <= kMaxHullWrenches)
-    out.volume = WrenchHullVolume(contacts, input.torque_scale, input.cone_edges);
-  const SingularMeasures singular = ComputeSingularMeasures(contacts, input.torque_scale);
-  out.min_singular_value = singular.min_singular_value;
-  out.sqrt_det = singular.sqrt_det;
-  out.isotropy = singular.isotropy;
+  MeasureInput measured(contacts, input.torque_scale, input.cone_edges);
+  const bool large =
+      contacts.size() * static_cast<std::size_t>(input.cone_edges + 2) > kMaxHullWrenches;
+  for (const MeasureInfo& info : kMeasureTable)
+    if (!large || info.cost != MeasureCost::kOnRequest)
+      out.values[static_cast<std::size_t>(info.id)] = info.compute(measured);
+  out.force_closure = *out.of(Measure::kEpsilon) > 0.0;
   if (input.weight)
     out.load_margin = LoadMargin(contacts, *input.weight, input.torque_scale, input.max_force);
   return out;

@@ -2,11 +2,13 @@
 
 /// All quality measures of one grasp, for `regrasp evaluate FILE` and for low-rate display.
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "core/quality/grasp.h"
+#include "core/quality/measures.h"
 
 namespace regrasp {
 
@@ -23,15 +25,16 @@ struct EvaluateInput {
 
 /// What INTERFACE calls the answer of `evaluate`.
 struct EvaluateOutput {
-  double epsilon = 0.0;  ///< Ferrari-Canny, L1; see EpsilonSolver
-  /// Of the same hull; see WrenchHullVolume(). None for more than kMaxHullWrenches edges together:
-  /// the facets of a whole six-dimensional hull grow with their cube.
-  std::optional<double> volume;
-  double min_singular_value = 0.0;  ///< see SingularMeasures; of hard fingers, as the next two
-  double sqrt_det = 0.0;
-  double isotropy = 0.0;
+  /// Every row of the table of measures; of hard fingers where a measure knows no others. None for
+  /// one that only a request may ask for, of more than kMaxHullWrenches edges together: the facets
+  /// of a whole six-dimensional hull grow with their cube.
+  std::array<std::optional<double>, kNumMeasures> values{};
   bool force_closure = false;         ///< epsilon > 0
   std::optional<double> load_margin;  ///< rho [N], present with a weight; see LoadMargin()
+
+  const std::optional<double>& of(Measure which) const {
+    return values[static_cast<std::size_t>(which)];
+  }
 };
 
 inline constexpr std::size_t kMaxEvaluateWrenches = 8192;  ///< contacts * cone_edges

@@ -172,12 +172,10 @@ std::string EvaluateJson(const std::string& text) {
   const EvaluateInput input = ToInput(Parse(text));
   const EvaluateOutput measures = Evaluate(input);
   nlohmann::ordered_json out;
-  out["epsilon"] = measures.epsilon;
-  out["volume"] = nullptr;
-  if (measures.volume) out["volume"] = *measures.volume;
-  out["min_singular_value"] = measures.min_singular_value;
-  out["sqrt_det"] = measures.sqrt_det;
-  out["isotropy"] = measures.isotropy;
+  for (const MeasureInfo& info : kMeasureTable) {
+    const std::optional<double>& value = measures.of(info.id);
+    out[std::string(info.name)] = value ? nlohmann::ordered_json(*value) : nullptr;
+  }
   out["force_closure"] = measures.force_closure;
   if (measures.load_margin) {
     const bool bounded = std::isfinite(*measures.load_margin);

@@ -17,7 +17,7 @@ namespace regrasp {
 /// torque scale the mean distance of the contacts, as in `quality`), to the text (one line) of its
 /// measures
 ///
-///   {"epsilon": e, "volume": v, "min_singular_value": s, "sqrt_det": d, "isotropy": i,
+///   {"min_singular_value": s, "epsilon": e, ... (every row of the table of measures),
 ///    "force_closure": b, "load_margin_n": rho, "load_margin_unbounded": u}
 ///
 /// Normals point into the object unless "normals" is "outward"; with "warnings" where all point
