@@ -1,6 +1,5 @@
 #include "daemon/daemon.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include "core/hand/scenario.h"
 #include "core/protocol/socket_path.h"
 #include "core/sensing/noise.h"
+#include "core/world/overlap_text.h"
 #include "core/world/stepper_choice.h"
 #include "daemon/config/reload.h"
 #include "daemon/server/server.h"
@@ -134,11 +134,8 @@ std::vector<std::string> CheckModels(const DaemonConfig& config) {
   std::vector<std::string> warnings;
   for (const ModelWarning& warning : session.config().model.report.warnings)
     warnings.push_back(warning.Line());
-  const StartOverlap& overlap = session.world().start_overlap();
-  if (overlap.depth > kStartOverlap)
-    warnings.push_back(fmt::format(
-        "the object begins {:.1f} mm inside the link {}; grasp will refuse", 1e3 * overlap.depth,
-        session.config().model.hand.links[static_cast<std::size_t>(overlap.link)].name));
+  const auto overlap = OverlapText(session.world().start_overlap(), session.config().model.hand);
+  if (overlap.front() != 0) warnings.push_back(overlap.data() + std::string("; grasp will refuse"));
   return warnings;
 }
 

@@ -193,6 +193,8 @@ class Service {
   void CheckRoom(std::size_t commands) const;
 
  private:
+  /// What stands between the braces of an object.
+  static std::string Members(const Json& object);
   void TakeIn(const JournalNews& news);
   /// The defaults with what the present preset sets.
   Parameters PresetValues() const;

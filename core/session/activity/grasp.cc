@@ -1,18 +1,17 @@
 #include "core/session/activity/grasp.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "core/world/overlap_text.h"
 
 namespace regrasp {
 
 Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) {
   if (!context.world.stand_in())
     return {Verdict::Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
-  const StartOverlap& overlap = context.world.start_overlap();
-  if (overlap.depth <= kStartOverlap) return {};
-  std::snprintf(refusal_, sizeof(refusal_), "the object begins %.1f mm inside the link %.60s",
-                1e3 * overlap.depth, context.now.hand.links[overlap.link].name.c_str());
-  return {Verdict::Kind::kBadState, refusal_,
+  refusal_ = OverlapText(context.world.start_overlap(), context.now.hand);
+  if (refusal_.front() == 0) return {};
+  return {Verdict::Kind::kBadState, refusal_.data(),
           "rotation_deg in the object's .toml, object_pose in the hand's, or another object"};
 }
 

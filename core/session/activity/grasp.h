@@ -19,7 +19,7 @@ class GraspActivity : public Activity {
 
  private:
   GraspSequence sequence_;
-  char refusal_[128] = "";
+  std::array<char, 128> refusal_{};
 };
 
 }  // namespace regrasp

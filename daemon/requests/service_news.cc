@@ -1,0 +1,217 @@
+// What the control loop has told: frames, events, jobs, the journal, incidents.
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "core/files/draft.h"
+#include "daemon/output/files.h"
+#include "daemon/output/incident.h"
+#include "daemon/output/output_file.h"
+#include "daemon/output/recorder.h"
+#include "daemon/requests/service.h"
+#include "daemon/wire/frame_json.h"
+
+namespace regrasp {
+namespace {
+
+constexpr std::size_t kEventsKept = 1000;  // for `events`
+constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
+
+}  // namespace
+
+std::vector<Sample> Service::Drain() {
+  // The control thread pushes a frame before the events and jobs it shows, so those are taken
+  // first.
+  TakeJobs();
+  std::vector<PublishedEvent> news;
+  for (PublishedEvent event; control_.PopEvent(&event);) news.push_back(event);
+
+  // Journal news go before the frames that show them.
+  TakeFrames();
+  TakeInNews();
+  const std::vector<Published> frames = std::exchange(frames_, {});
+
+  const bool fresh = !frames.empty();
+  for (const Published& published : frames) {
+    if (published.run != newest_.run) history_.Clear();
+    history_.Add(published.frame);
+    if (recorder) recorder->Add(published);
+    newest_ = published;
+  }
+  for (const PublishedEvent& published : news) {
+    const Event& event = published.event;
+    if (published.run == newest_.run) {
+      history_.Add(event);
+      // Before anybody hears of the drop, so that its record is there when they do.
+      if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
+        RecordIncident(event);
+    }
+    if (recorder) recorder->Add(event, published.run);
+    Json json = EventNewsJson(event, hand(), dt());
+    if (json.contains("incident"))
+      json["incident"] = incident_file_.empty() ? Json() : Json(incident_file_);
+    Keep(std::move(json));
+  }
+  SaveStateIfDue();
+  if (fresh) {
+    ++frame_number_;
+    topics_.clear();
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed = std::chrono::duration<double>(now - sample_.wall).count();
+    if (elapsed > 0.25) {
+      const bool known = sample_.wall.time_since_epoch().count() != 0 && sample_.run == newest_.run;
+      if (known) real_time_factor_ = (newest_.frame.time_s - sample_.time_s) / elapsed;
+      sample_ = {now, newest_.frame.time_s, newest_.run};
+    }
+    if (newest_.frame.job.id != 0) jobs_.Update(newest_.frame.job);
+    if (newest_.step.id != 0) jobs_.Update(newest_.step);
+  }
+  for (const JobRecord& job : ended_) jobs_.Update(job);
+  ended_.clear();
+  LookAfterRecorder();
+  return std::exchange(news_, {});
+}
+
+void Service::Keep(Json event) {
+  events_.push_back(ToText(event));
+  if (events_.size() > kEventsKept) events_.pop_front();
+  const double time_s = event["t_s"];
+  event.erase("t_s");
+  news_.push_back({time_s, Members(event)});
+}
+
+void Service::Tell(const char* kind, const std::string& text) {
+  spdlog::warn("{}", text);
+  Keep({{"tick", newest_.frame.tick},
+        {"t_s", newest_.frame.time_s},
+        {"kind", kind},
+        {"finger", nullptr},
+        {"value", 0.0},
+        {"text", text}});
+}
+
+void Service::LookAfterRecorder() {
+  if (!recorder) return;
+  const Recorder::Numbers numbers = recorder->numbers();
+  if (numbers.failure.empty() && !numbers.full) return;
+  const std::string file = recorder->path().filename().string();
+  recording_end = numbers.full ? fmt::format("{} has {} MB, as much as one run file may have", file,
+                                             numbers.bytes >> 20)
+                               : fmt::format("{}: {}", file, numbers.failure);
+  Tell(numbers.full ? "recording_full" : "recording_failed", recording_end);
+  const auto old = std::exchange(recorder, nullptr);
+  if (!host_->Background([old] { old->Finish(); }, [] {})) old->Finish();
+}
+
+void Service::TakeJobs() {
+  const auto room_for_another = [this] { return ended_.reserve(ended_.size() + 1), true; };
+  for (JobRecord job; room_for_another() && control_.PopJob(&job);) ended_.push_back(job);
+}
+
+void Service::TakeFrames() {
+  for (Published published; control_.PopFrame(&published);) frames_.push_back(published);
+}
+
+void Service::TakeInNews() {
+  for (JournalNews item; untaken_ || control_.PopNews(&item); untaken_.reset()) {
+    if (!untaken_) untaken_ = std::move(item);
+    TakeIn(*untaken_);
+  }
+}
+
+void Service::TakeIn(const JournalNews& news) {
+  switch (news.kind) {
+    case JournalNews::Kind::kBegin:
+      journal_ = news.start->journal;
+      run_ = news.run;
+      if (recorder) recorder->Begin(journal_, run_);
+      config_.control.session.world = journal_.config.world;  // a checkpoint brings its own
+      config_.control.session.model.scenario = journal_.config.model.scenario;
+      if (!news.start->restored) break;
+      accepted.parameters = news.start->parameters;
+      accepted.noise = news.start->noise;
+      accepted.seed = news.start->seed;
+      AcceptObject(std::make_shared<const ObjectModel>(journal_.config.model.object));
+      break;
+    case JournalNews::Kind::kCommand:
+      journal_.entries.push_back(news.entry);
+      if (recorder) recorder->Add(news.entry, news.run);
+      break;
+    case JournalNews::Kind::kMark:
+      // What ended before the mark is known before whoever waits for the mark hears of it.
+      TakeJobs();
+      TakeFrames();
+      if (const auto mark = marks_.extract(news.request)) mark.mapped()(news);
+      break;
+  }
+}
+
+void Service::Mark(std::function<void(const JournalNews&)> told) {
+  CheckNotRestoring();
+  marks_.emplace(Post({.kind = ControlRequest::Kind::kMark}), std::move(told));
+}
+
+void Service::AfterTaken(std::uint64_t request, std::function<void()> then) {
+  after_taken_.emplace(request, std::move(then));
+}
+
+void Service::OnAcknowledged(std::uint64_t request) {
+  while (!after_taken_.empty() && after_taken_.begin()->first <= request)
+    after_taken_.extract(after_taken_.begin()).mapped()();
+}
+
+void Service::SaveStateIfDue() {
+  if (!recorder || !recorder->TakeStateDue(newest_)) return;
+  try {
+    Mark([this](const JournalNews& mark) {
+      if (recorder && mark.saved && !mark.saved->empty()) recorder->Add(mark);
+    });
+  } catch (const RpcException&) {  // the queue is full: the next one will do
+  }
+}
+
+void Service::RecordIncident(const Event& event) {
+  IncidentSource source;
+  source.event = event;
+  source.frames = history_.Recent();
+  source.events = history_.Events();
+  source.job = newest_.frame.job;
+  source.parameters = accepted.parameters;
+  source.object = accepted.object->name;
+  source.dt = dt();
+  const auto incident = std::make_shared<const Incident>(MakeIncident(source, hand()));
+  const auto record = FreeFile(config_.output_dir, IncidentName(event.tick), ".json");
+  const auto picture = std::filesystem::path(record).replace_extension(".png");
+  incident_file_ = record.filename().string();
+  incident_ = incident;
+  incident_summary_ = {{"tick", event.tick},         {"time_s", incident->time_s},
+                       {"seed", newest_.frame.seed}, {"cause", incident->cause},
+                       {"record", record.string()},  {"picture", picture.string()}};
+  if (incident->job.id != 0) job_incidents_[incident->job.id] = incident_summary_;
+  if (job_incidents_.size() > JobTable::kKept) job_incidents_.erase(job_incidents_.begin());
+  spdlog::warn("{}", incident->cause);
+  try {
+    WriteWhole(record, IncidentText(*incident, hand()), Draft::Existing::kKeep, false);
+  } catch (const std::exception& e) {
+    Tell("incident_not_recorded", fmt::format("no record of the incident: {}", e.what()));
+    incident_file_.clear();
+  }
+  DrawIncidentLater(incident, picture);
+}
+
+void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident,
+                                std::filesystem::path picture) {
+  const auto draw = [incident, picture, hand = hand(), keep = config_.budgets.incidents] {
+    try {
+      WriteOutput(picture, Draft::Existing::kReplace,
+                  [&](const std::string& draft) { DrawIncident(*incident, hand, 0, draft); });
+      PruneIncidents(picture.parent_path(), keep);
+    } catch (const std::exception& e) {
+      spdlog::error("no picture of the incident: {}", e.what());
+    }
+  };
+  if (host_->Background(draw, [] {})) return;
+  host_->After(kRetry_s, [this, incident, picture] { DrawIncidentLater(incident, picture); });
+}
+
+}  // namespace regrasp
