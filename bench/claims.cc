@@ -30,7 +30,7 @@
 
 #include "bench/children.h"
 #include "bench/settings.h"
-#include "core/common/random.h"
+#include "bench/trial.h"
 #include "core/hand/scenario.h"
 #include "core/session/completed.h"
 #include "core/session/session.h"
@@ -67,30 +67,6 @@ SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string
   }
   Apply(o.set, &config.parameters);
   return config;
-}
-
-/// Gives a job command and ticks until it ends. Returns its record.
-JobRecord RunJob(Session& session, Command command, double max_s) {
-  static std::int64_t next_id = 1;
-  command.job = next_id++;
-  session.Apply(command);
-  const auto limit = session.tick() + static_cast<std::int64_t>(max_s * 1000);
-  while (session.tick() < limit) {
-    session.Tick();
-    session.TakeEvents();
-    for (const JobRecord& job : session.TakeFinishedJobs())
-      if (job.id == command.job) return job;
-  }
-  JobRecord late;
-  late.state = JobState::kFailed;
-  std::snprintf(late.error, sizeof(late.error), "not finished after %.0f s", max_s);
-  return late;
-}
-
-bool Grasp(Session& session) {
-  Command grasp;
-  grasp.type = CommandType::kGrasp;
-  return RunJob(session, grasp, 20).state == JobState::kDone;
 }
 
 using Row = std::vector<double>;
@@ -245,7 +221,7 @@ int Explore(const Options& o) {
         if (criterion.name == o.criterion) c.criterion = criterion.id;
       c.estimator = o.estimator == "secant" ? Estimator::kSecant : Estimator::kLeastSquares;
       const Vector3d p0 = session.truth().p_WO;
-      const JobRecord job = RunJob(session, c, 60);
+      const JobRecord job = RunJob(session, c, {.limit_s = 60});
       for (int t = 0; t < 1000; ++t) session.Tick();
       return {static_cast<double>(job.state == JobState::kDone),
               static_cast<double>(job.explore.reason),
@@ -311,45 +287,28 @@ Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::u
   if (!Grasp(session)) return {kFailed};
   Command c;
   c.type = CommandType::kRotate;
-  c.job = 1000;
   c.angle_rad = 2 * M_PI * o.turns;
   c.axis_W = axis;
   c.speed_rad_s = o.speed * M_PI / 180;
-  session.Apply(c);
-  JobRecord job;
   double slips = 0, refused = 0, touching = 0;
   std::vector<PhiChange> changes, shifts;  // for manipulability; for stability
-  const auto limit =
-      session.tick() + static_cast<std::int64_t>(std::abs(o.turns) * 1000 * 1000) + 30000;
-  RandomStream pushes(seed, 3000);
-  while (job.id == 0 && session.tick() < limit) {
-    if (o.push > 0 && session.tick() % 1000 == 0) {
-      Command push;
-      push.type = CommandType::kPush;
-      push.force_W = o.push * pushes.Normal3().normalized();
-      push.duration_s = 0.1;
-      session.Apply(push);
-    }
-    session.Tick();
-    touching += session.truth().link_link_contacts > 0;
-    for (const Event& e : session.TakeEvents()) {
-      slips += e.kind == EventKind::kSlip;
-      refused += e.kind == EventKind::kRefused;
-      if (e.kind != EventKind::kRegrasp) continue;
-      const RegraspRecord& r = session.last_regrasp();
-      if (r.aborted || r.phi_start <= 0) continue;
-      const PhiChange change{r.finger, r.phi_before, r.phi_start, r.phi_after};
-      if (r.criterion == Criterion::kStability)
-        shifts.push_back(change);
-      else if (!r.on_stability)
-        changes.push_back(change);
-    }
-    for (const JobRecord& j : session.TakeFinishedJobs()) job = j;
-  }
-  if (job.id == 0) {
-    std::snprintf(job.error, sizeof(job.error), "not finished after %.0f s", session.tick() * 1e-3);
-    job.state = JobState::kFailed;
-  }
+  JobOptions options;
+  options.limit_s = std::abs(o.turns) * 1000 + 30;
+  options.push_n = o.push;
+  options.on_tick = [&] { touching += session.truth().link_link_contacts > 0; };
+  options.on_event = [&](const Event& e) {
+    slips += e.kind == EventKind::kSlip;
+    refused += e.kind == EventKind::kRefused;
+    if (e.kind != EventKind::kRegrasp) return;
+    const RegraspRecord& r = session.last_regrasp();
+    if (r.aborted || r.phi_start <= 0) return;
+    const PhiChange change{r.finger, r.phi_before, r.phi_start, r.phi_after};
+    if (r.criterion == Criterion::kStability)
+      shifts.push_back(change);
+    else if (!r.on_stability)
+      changes.push_back(change);
+  };
+  const JobRecord job = RunJob(session, c, options);
   std::map<int, double> best;
   for (const PhiChange& p : changes) best[p.finger] = std::max(best[p.finger], p.after);
   double rose = 0, low = 0, low_rose = 0, gain = 0, phi = 0;
@@ -506,7 +465,7 @@ Row MoveTrial(Session& session, const Options& o, const Vector3d& axis, std::uin
   c.type = CommandType::kMove;
   c.offset_W = o.offset_mm * 1e-3 * axis;
   c.rotation_W = o.angle * M_PI / 180 * axis;
-  const JobRecord job = RunJob(session, c, 120);
+  const JobRecord job = RunJob(session, c, {.limit_s = 120});
   const MoveResult& r = job.move;
   const int joint = NearestToLimit(session, r.end_finger);
   for (int t = 0; t < 1000; ++t) session.Tick();

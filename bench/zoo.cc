@@ -23,7 +23,7 @@
 
 #include "bench/children.h"
 #include "bench/settings.h"
-#include "core/common/random.h"
+#include "bench/trial.h"
 #include "core/hand/scenario.h"
 #include "core/session/completed.h"
 #include "core/session/session.h"
@@ -84,45 +84,25 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
 
 Trial Run(const Options& o, SessionConfig config) {
   Trial trial;
-  const std::uint64_t seed = config.seed;
   Session session(std::move(config));
-  Command command;
-  command.type = CommandType::kGrasp;
-  command.job = 1;
-  session.Apply(command);
-  JobRecord job;
-  const auto Advance = [&](double seconds) {
-    const auto end = session.tick() + static_cast<std::int64_t>(1000 * seconds);
-    RandomStream pushes(seed, 3000);
-    for (job = JobRecord(); job.id == 0 && session.tick() < end;) {
-      if (o.push > 0 && command.type == CommandType::kRotate && session.tick() % 1000 == 0) {
-        Command push;
-        push.type = CommandType::kPush;
-        push.force_W = o.push * pushes.Normal3().normalized();
-        push.duration_s = 0.1;
-        session.Apply(push);
-      }
-      session.Tick();
-      for (const Event& e : session.TakeEvents()) {
-        if (o.events)
-          std::fprintf(stderr, "%8.3f %s\n", 1e-3 * static_cast<double>(e.tick), e.text);
-        trial.slips += e.kind == EventKind::kSlip;
-        trial.refused += e.kind == EventKind::kRefused;
-      }
-      for (const JobRecord& finished : session.TakeFinishedJobs()) job = finished;
-    }
+  JobOptions options;
+  options.limit_s = 20;
+  options.on_event = [&](const Event& e) {
+    if (o.events) std::fprintf(stderr, "%8.3f %s\n", 1e-3 * static_cast<double>(e.tick), e.text);
+    trial.slips += e.kind == EventKind::kSlip;
+    trial.refused += e.kind == EventKind::kRefused;
   };
-  Advance(20);
-  if (job.state != JobState::kDone) {
+  if (!Grasp(session, options)) {
     std::snprintf(trial.error, sizeof(trial.error), "not grasped");
     return trial;
   }
+  Command command;
   command.type = CommandType::kRotate;
-  command.job = 2;
   command.angle_rad = 2 * M_PI * o.turns;
   command.axis_W = o.axis;
-  session.Apply(command);
-  Advance(o.limit_s * o.turns);
+  options.limit_s = o.limit_s * o.turns;
+  options.push_n = o.push;
+  const JobRecord job = RunJob(session, command, options);
   const RotateResult& r = job.rotate;
   trial.shape = JudgeShape(session.felt_surface(), TrueSurface(session.config().model.object));
   const bool ended = job.id != 0 && job.state == JobState::kDone;
