@@ -97,6 +97,29 @@ class DaemonCase(Case):
         self.assertEqual(up.returncode, 0, up.stderr + (log.read_text() if log.exists() else ""))
 
 
+class Wire:
+    """One connection to a daemon: numbered requests go out as lines, `lines` come in."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.settimeout(HANG_S)
+        self.socket.connect(str(path))
+        self.lines = self.socket.makefile("rb")
+        self.last = 0
+
+    def request(self, method, params):
+        """The next request, not sent yet."""
+        self.last += 1
+        return {"jsonrpc": "2.0", "id": self.last, "method": method, "params": params}
+
+    def write(self, *messages):
+        self.socket.sendall(b"".join(json.dumps(message).encode() + b"\n" for message in messages))
+
+    def close(self):
+        self.lines.close()
+        self.socket.close()
+
+
 class FakeDaemon:
     """Answers from a script: `answers` maps a method to a function(params) that returns a result, raises
     Refusal, or returns None for silence. Keeps the requests."""

@@ -7,29 +7,20 @@ runs freely; replayed by another process, at another speed. Then 100 branches of
 and 100 with others."""
 
 import json
-import socket
 import unittest
 
-from harness import DaemonCase
+from harness import DaemonCase, Wire
 
 FINGERS = ["first", "middle", "ring", "little", "thumb"]
 PRESETS = ["paper", "fine", "off", "paper"]
 
 
-class Wire:
-    """One connection; answers in order."""
-
-    def __init__(self, path):
-        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self.socket.connect(str(path))
-        self.file = self.socket.makefile("rw")
-        self.id = 0
+class Caller(Wire):
+    """Answers in order."""
 
     def ask(self, method, **params):
-        self.id += 1
-        self.file.write(json.dumps({"jsonrpc": "2.0", "id": self.id, "method": method, "params": params}) + "\n")
-        self.file.flush()
-        answer = json.loads(self.file.readline())
+        self.write(self.request(method, params))
+        answer = json.loads(self.lines.readline())
         return answer.get("result"), answer.get("error")
 
     def __call__(self, method, **params):
@@ -40,15 +31,12 @@ class Wire:
     def wait(self, result):
         return self("job.wait", id=result["job"])
 
-    def close(self):
-        self.file.close()
-        self.socket.close()
 
 
 class LongRun(DaemonCase):
     def setUp(self):
         super().setUp()
-        self.wire = Wire(self.socket)
+        self.wire = Caller(self.socket)
         self.addCleanup(self.wire.close)
 
     def test_five_minutes_replay_to_the_bit(self):

@@ -12,7 +12,7 @@ import time
 import unittest
 
 from harness import DaemonCase
-from long_run import Wire
+from long_run import Caller
 
 SAVES = int(os.environ.get("SAVES", "200"))
 GO_ON = 5000  # ticks
@@ -55,7 +55,7 @@ class StateProof(DaemonCase):
         ticks = random.Random(5).sample([t for t in range(1, LENGTH - GO_ON) if t not in SCRIPT], SAVES)
         wanted = sorted(set(ticks) | {t + GO_ON for t in ticks})
         hashes = {}
-        wire = Wire(self.socket)
+        wire = Caller(self.socket)
         for tick in wanted:
             hashes[tick] = self.step_to(wire, tick)
             if tick in set(ticks):
@@ -63,7 +63,7 @@ class StateProof(DaemonCase):
         wire.close()
         self.expect(0, "down")
         self.start_daemon()  # the same directory, another process
-        wire = Wire(self.socket)
+        wire = Caller(self.socket)
         times = []
         for n, tick in enumerate(sorted(ticks)):
             began = time.monotonic()

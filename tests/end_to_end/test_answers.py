@@ -8,36 +8,30 @@ import os
 import pathlib
 import random
 import select
-import socket
 import unittest
 
-from harness import HANG_S, DaemonCase
+from harness import DaemonCase, Wire
 
 REQUESTS = int(os.environ.get("REGRASP_REQUESTS", "3000"))
 SEED = int(os.environ.get("REGRASP_SEED_OF_REQUESTS", "1"))
 
 
-class Client:
+class Client(Wire):
     """Pipelines requests, reads answers, checks that each id comes once and in order (job.wait may be overtaken)."""
 
     def __init__(self, path):
-        self.socket = socket.socket(socket.AF_UNIX)
-        self.socket.settimeout(HANG_S)
-        self.socket.connect(str(path))
-        self.lines = self.socket.makefile("rb")
-        self.last = 0
+        super().__init__(path)
         self.open = {}  # id -> method, in the order of asking
 
     def send(self, requests, batch=False):
         messages = []
         for method, params in requests:
-            self.last += 1
+            messages.append(self.request(method, params))
             self.open[self.last] = method
-            messages.append({"jsonrpc": "2.0", "id": self.last, "method": method, "params": params})
         if batch:
-            self.socket.sendall(json.dumps(messages).encode() + b"\n")
+            self.write(messages)
         else:
-            self.socket.sendall(b"".join(json.dumps(m).encode() + b"\n" for m in messages))
+            self.write(*messages)
 
     def take(self, answer):
         number = answer.get("id")
@@ -70,9 +64,6 @@ class Client:
             self.take(answer)
         return answer
 
-    def close(self):
-        self.lines.close()
-        self.socket.close()
 
 
 def request(r):

@@ -20,26 +20,21 @@ import subprocess
 import time
 import unittest
 
-from harness import BIN, HANG_S, REGRASPD, SOURCE, Case, DaemonCase, environment
+from harness import BIN, HANG_S, REGRASPD, SOURCE, Case, DaemonCase, Wire, environment
 
 LIBRARIES = pathlib.Path(os.environ.get("REGRASP_FAULT_LIBRARIES", BIN.parent / "tests"))
 KILLS = int(os.environ.get("REGRASP_KILLS", "2"))
 
 
-class Wire:
-    """One connection; `ask` returns the answer, `None` where the connection was given up."""
+class Connection(Wire):
+    """`ask` returns the answer, `None` where the connection was given up."""
 
     def __init__(self, path):
-        self.socket = socket.socket(socket.AF_UNIX)
-        self.socket.settimeout(HANG_S)
-        self.socket.connect(str(path))
-        self.lines = self.socket.makefile("rb")
-        self.last = 0
+        super().__init__(path)
         self.events = []
 
     def send(self, method, **params):
-        self.last += 1
-        self.socket.sendall(json.dumps({"jsonrpc": "2.0", "id": self.last, "method": method, "params": params}).encode() + b"\n")
+        self.write(self.request(method, params))
 
     def ask(self, method, **params):
         try:
@@ -72,9 +67,6 @@ class Wire:
                 raise AssertionError(f"the connection ended before {kind}")
             self.events.append(json.loads(line))
 
-    def close(self):
-        self.lines.close()
-        self.socket.close()
 
 
 class SystemCase(Case):
@@ -88,7 +80,7 @@ class SystemCase(Case):
         while True:
             self.assertIsNone(self.daemon.poll(), "the daemon has ended")
             try:
-                wire = Wire(self.socket)
+                wire = Connection(self.socket)
             except OSError:
                 time.sleep(0.01)
                 continue
@@ -147,7 +139,7 @@ class Descriptors(SystemCase):
         self.assertIn("result", wire.ask("grasp"))
         for client in crowd:
             client.close()
-        late = Wire(self.socket)  # one of those that had no descriptor
+        late = Connection(self.socket)  # one of those that had no descriptor
         self.assertEqual([r["file"] for r in late.result("record.list")["recordings"]], ["r.mcap"])
         self.assertEqual(sorted(os.listdir(self.out)), ["r.mcap", "x.checkpoint"])
         self.goes_on(late)

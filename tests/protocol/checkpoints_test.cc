@@ -11,14 +11,8 @@
 namespace regrasp::test {
 namespace {
 
-class Checkpoints : public DaemonTest {
+class Checkpoints : public SteppedDaemonTest {
  protected:
-  void SetUp() override {
-    Start();
-    client = Connect();
-  }
-  Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
-  void Step(int ticks) { Wait(client->Result("step", {{"ticks", ticks}})["job"]); }
   std::string Hash() { return client->Result("status")["state_hash"]; }
   /// Restores and returns the record of the restore.
   Json Restore(const Json& params) {
@@ -31,7 +25,6 @@ class Checkpoints : public DaemonTest {
     client->Result("param.set", {{"name", "object.friction"}, {"value", 0.7}});
     saved = client->Result("checkpoint.save", {{"name", "start"}});
   }
-  std::unique_ptr<TestClient> client;
   Json saved;
 };
 

@@ -149,4 +149,17 @@ class DaemonTest : public ::testing::Test {
   std::thread thread;
 };
 
+/// One with a client that steps it.
+class SteppedDaemonTest : public DaemonTest {
+ protected:
+  void SetUp() override {
+    Start();
+    client = Connect();
+  }
+  Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
+  void Step(int ticks) { Wait(client->Result("step", {{"ticks", ticks}})["job"]); }
+
+  std::unique_ptr<TestClient> client;
+};
+
 }  // namespace regrasp::test

@@ -13,14 +13,8 @@
 namespace regrasp::test {
 namespace {
 
-class Recordings : public DaemonTest {
+class Recordings : public SteppedDaemonTest {
  protected:
-  void SetUp() override {
-    Start();
-    client = Connect();
-  }
-  Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
-  void Step(int ticks) { Wait(client->Result("step", {{"ticks", ticks}})["job"]); }
   /// A grasp with live changes; 400 ticks.
   void GraspWithChanges() {
     client->Result("grasp");
@@ -36,7 +30,6 @@ class Recordings : public DaemonTest {
     EXPECT_FALSE(result.divergence) << run::Verdict(file, result);
     EXPECT_GT(result.compared, 10);
   }
-  std::unique_ptr<TestClient> client;
 };
 
 TEST_F(Recordings, ReplayToTheSameStates) {
