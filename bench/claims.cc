@@ -124,7 +124,7 @@ double Max(const std::vector<double>& v) {
 /// {held, max deviation mm, rms mm, mean force residual / weight, foreign contacts, largest
 /// link-link count}
 Row HoldTrial(Session& session, double seconds) {
-  if (!Grasp(session)) return {kFailed, 0, 0, 0, 0, 0};
+  if (!GraspObject(session)) return {kFailed, 0, 0, 0, 0, 0};
   const Vector3d p0 = session.truth().p_WO;
   double worst = 0, square = 0, foreign = 0, links = 0;
   Vector3d force = Vector3d::Zero();
@@ -212,7 +212,7 @@ int Explore(const Options& o) {
     if (!o.finger.empty() && o.finger != name) continue;
     const auto rows = Parallel(o.seeds, o.jobs, [&](int k) -> Row {
       Session session(MakeConfig(o, o.first + k, o.object));
-      if (!Grasp(session)) return {kFailed};
+      if (!GraspObject(session)) return {kFailed};
       Command c;
       c.type = CommandType::kExplore;
       c.finger = finger;
@@ -284,7 +284,7 @@ struct PhiChange {
 /// explorations begun below 98 % of best, of them rose, mean change start-to-after, mean after,
 /// explorations for stability (S_F), of them rose, mean at their start, mean after}
 Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
-  if (!Grasp(session)) return {kFailed};
+  if (!GraspObject(session)) return {kFailed};
   Command c;
   c.type = CommandType::kRotate;
   c.angle_rad = 2 * M_PI * o.turns;
@@ -460,7 +460,7 @@ int NearestToLimit(const Session& session, int finger) {
 /// on the way mm, still held a second later, share of the way, largest angle error on the way deg}.
 /// Errors are against what was wanted and, on the way, against the reference.
 Row MoveTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
-  if (!Grasp(session)) return {kFailed};
+  if (!GraspObject(session)) return {kFailed};
   Command c;
   c.type = CommandType::kMove;
   c.offset_W = o.offset_mm * 1e-3 * axis;
@@ -549,7 +549,7 @@ int Repeat(const Options& o) {
   std::uint64_t hash[2];
   for (std::uint64_t& h : hash) {
     Session session(MakeConfig(o, o.first, o.object));
-    Grasp(session);
+    GraspObject(session);
     const int ticks = static_cast<int>(o.seconds * 1000);
     while (session.tick() < ticks) {
       session.Tick();

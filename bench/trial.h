@@ -51,7 +51,7 @@ inline JobRecord RunJob(Session& session, Command command, const JobOptions& opt
 }
 
 /// Closes the hand on the object. Whether it holds.
-inline bool Grasp(Session& session, const JobOptions& options = {.limit_s = 20}) {
+inline bool GraspObject(Session& session, const JobOptions& options = {.limit_s = 20}) {
   Command grasp;
   grasp.type = CommandType::kGrasp;
   return RunJob(session, grasp, options).state == JobState::kDone;

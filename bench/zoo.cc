@@ -92,7 +92,7 @@ Trial Run(const Options& o, SessionConfig config) {
     trial.slips += e.kind == EventKind::kSlip;
     trial.refused += e.kind == EventKind::kRefused;
   };
-  if (!Grasp(session, options)) {
+  if (!GraspObject(session, options)) {
     std::snprintf(trial.error, sizeof(trial.error), "not grasped");
     return trial;
   }

@@ -82,8 +82,9 @@ std::string MethodSection(const MethodSpec& method) {
     text +=
         fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", spec.name, Name(spec.type), spec.unit,
                     Limits(spec), spec.required ? "required" : spec.default_text, spec.sentence);
-  text += fmt::format("\nAnswer: {}{}.\n\n", method.result,
-                      method.job ? " (a number; the record is in `job.get`)" : "");
+  std::string answer(method.result);
+  if (method.job) answer.insert(answer.find("job") + 3, " (a number; the record is in `job.get`)");
+  text += fmt::format("\nAnswer: {}.\n\n", answer);
   return text;
 }
 

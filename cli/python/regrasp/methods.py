@@ -169,7 +169,7 @@ class Methods:
     def param_list(self, group: str | None = None, changed: bool | None = None) -> dict:
         """Every parameter, a group, or what has been changed.
         group: only parameters whose names begin so: gait; one of control, exploration, gait, gravity, object,
-            start; left out: all.
+            shape, start; left out: all.
         changed: only parameters that differ from their defaults; left out: false.
         Returns parameters: [{name, value, ... as param.get}].
         """
