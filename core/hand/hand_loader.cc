@@ -7,6 +7,7 @@
 
 #include "core/hand/hand_shapes.h"
 #include "core/hand/hand_tree.h"
+#include "core/hand/link_body.h"
 #include "core/hand/problems.h"
 #include "core/hand/solid.h"
 #include "core/hand/urdf.h"
@@ -135,17 +136,7 @@ class HandReader {
       problems_.Add(body.line, "{}: <mass> = {:.6g}; must be > 0", LinkElement(in.name), body.mass);
       return;
     }
-    const double total = link->mass + body.mass;
-    const Matrix3d R = body.X_LI.linear();
-    const Matrix3d I = R * body.inertia * R.transpose();
-    const Vector3d p = X_LG * body.X_LI.translation();
-    const Vector3d com =
-        total > 0 ? Vector3d((link->mass * link->p_LCom + body.mass * p) / total) : p;
-    link->I_LCom += PointInertia(link->mass, link->p_LCom - com) +
-                    PointInertia(body.mass, p - com) +
-                    X_LG.linear() * I * X_LG.linear().transpose();
-    link->mass = total;
-    link->p_LCom = com;
+    AddBodyTo(link, body, X_LG);
   }
 
   void AddJoint(int j) {
@@ -241,21 +232,10 @@ class HandReader {
         problems_.Add(line, "{}: {}; --inertia-from-shape computes what is missing", element, why);
         continue;
       }
-      Invent(&link);
+      InventBody(&link);
       Warn(line, element,
            fmt::format("{}; {:.3g} g with the inertia of its shape taken", why, 1e3 * link.mass));
     }
-  }
-
-  /// Mass (where there is none), centre and inertia of a homogeneous link of its shape.
-  static void Invent(Link* link) {
-    constexpr double kDensity = 1100;  // [kg/m³]: plastic with motors and air
-    Shape knuckle;                     // of a link without shape
-    knuckle.radius = 5e-3;
-    const Solid solid = LinkSolid(link->shapes.empty() ? std::vector{knuckle} : link->shapes);
-    if (!(link->mass > 0)) link->mass = kDensity * solid.volume;
-    link->p_LCom = solid.centre;
-    link->I_LCom = solid.inertia * (link->mass / solid.volume);
   }
 
   /// Puts driven joints before coupled ones and turns every reference into the final numbers.
@@ -361,11 +341,6 @@ class HandReader {
 HandModel LoadHand(const std::filesystem::path& urdf_file, const HandLayout& layout,
                    const LoadOptions& options, ModelReport* report) {
   return HandReader(urdf_file, layout, options, report).Read();
-}
-
-std::string ModelWarning::Line() const {
-  return fmt::format("{}{}: {}{}{}", file, line > 0 ? fmt::format(":{}", line) : "", element,
-                     element.empty() ? "" : ": ", text);
 }
 
 }  // namespace regrasp

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/hand/model_report.h"
+
 namespace regrasp {
 namespace {
 
@@ -31,6 +33,11 @@ void Problems::ThrowIfAny() const {
   if (messages_.size() == kShown && count_ > kShown)
     text += fmt::format("\n  and {} more", count_ - kShown);
   throw ModelError(text);
+}
+
+std::string ModelWarning::Line() const {
+  return fmt::format("{}{}: {}{}{}", file, line > 0 ? fmt::format(":{}", line) : "", element,
+                     element.empty() ? "" : ": ", text);
 }
 
 }  // namespace regrasp

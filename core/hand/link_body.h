@@ -1,0 +1,17 @@
+#pragma once
+
+/// Mass, centre and inertia of a link that is put together from bodies, or has none.
+
+#include "core/hand/hand_model.h"
+#include "core/hand/urdf_file.h"
+
+namespace regrasp {
+
+/// Adds a body that is fixed to the link at X_LG. Whether the sum can be a body is for later:
+/// frames without mass are common.
+void AddBodyTo(Link* link, const UrdfInertial& body, const Isometry3d& X_LG);
+
+/// Mass (where there is none), centre and inertia of a homogeneous link of its shape.
+void InventBody(Link* link);
+
+}  // namespace regrasp
