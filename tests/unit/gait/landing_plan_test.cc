@@ -143,7 +143,7 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     for (int i = 0; i < FeltSurface::kCells; ++i) {
       const Vector3d d = FeltSurface::CellDirection(i);
       if (d.dot(here.normalized()) < std::cos(0.2)) continue;
-      for (int k = 0; k < FeltSurface::kFull; ++k) felt.Add(kRadius * d, d);
+      for (int k = 0; k < ShapeParameters().full; ++k) felt.Add(kRadius * d, d);
     }
     LandingPlan plan;
     plan.Start(request);
