@@ -96,6 +96,14 @@ void FingerGait::EndStancePlan(const ControlTick& tick) {
     stance_queue_ = tick.grasp.without(room_for_);
 }
 
+/// The finger whose absence leaves the largest load margin; -1 of none.
+static int NearestToLeaving(const ControlTick& tick, FingerSet fingers) {
+  int nearest = -1;
+  for (int i : fingers)
+    if (nearest < 0 || tick.margins.without[i] > tick.margins.without[nearest]) nearest = i;
+  return nearest;
+}
+
 void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench) {
   if (Unsteady(tick) && ticks_ * tick.dt < tick.gait.second_thought_s) return;
   if (room_for_ >= 0) {
@@ -139,9 +147,7 @@ void FingerGait::NextPlanned(const ControlTick& tick, const ObjectWrench& wrench
   if (waiting_.empty()) return EndCycle(tick, wrench);
   if (early) return;
   // Of the fingers that must come along, the one that is nearest to leaving.
-  int refused = -1;
-  for (int i : waiting_)
-    if (refused < 0 || tick.margins.without[i] > tick.margins.without[refused]) refused = i;
+  const int refused = NearestToLeaving(tick, waiting_);
   const bool must = ReserveOf(tick, refused) < tick.gait.reserve_needed || idle_cycles_ > 0 ||
                     tick.margins.all < 0.5 * tick.gait.margin_wanted;
   if (must && !made_room_.contains(refused)) {
