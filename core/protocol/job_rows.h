@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/exploration/criterion.h"
-#include "core/exploration/exploration_parameters.h"
+#include "core/exploration/estimator.h"
 #include "core/protocol/methods.h"
 
 namespace regrasp::rows {
