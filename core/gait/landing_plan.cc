@@ -8,6 +8,7 @@
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"
 #include "core/gait/sure_grasp.h"
+#include "core/gait/sure_reserve.h"
 #include "core/quality/load_margin.h"
 
 namespace regrasp {
@@ -149,8 +150,8 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   if (gap < kClearance) score -= kPenalty * std::min(5.0, (kClearance - gap) / 0.002);
   landing->blocked = gap < -kOverlap;
   if (!request_.axis_W.isZero()) {
-    landing->reserve = MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W,
-                                     tick.gait.limit_margin, tick.gait.reserve_wanted);
+    landing->reserve = SureReserve(hand, finger, there, estimate.p_WO, request_.axis_W,
+                                   tick.gait.limit_margin, tick.gait.reserve_wanted);
     score += Share(landing->reserve, tick.gait.reserve_wanted);
     // The finger with the least reserve ends the coming motion for all of them.
     const double short_of =

@@ -6,6 +6,7 @@
 
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"
+#include "core/gait/sure_reserve.h"
 #include "core/hand/finger_reach.h"
 #include "core/shape/felt_surface.h"
 #include "tests/unit/control/held_sphere.h"
@@ -49,8 +50,8 @@ struct TurnAlongTest : testing::Test {
     double least = 10;
     for (int i : fingers) {
       const FingerPosture now = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
-      least = std::min(
-          least, MotionReserve(hand, i, now, estimate.p_WO, kAxis_W, gait.limit_margin, 10.0));
+      least = std::min(least,
+                       SureReserve(hand, i, now, estimate.p_WO, kAxis_W, gait.limit_margin, 10.0));
     }
     return least;
   }
