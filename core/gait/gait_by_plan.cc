@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/gait/finger_gait.h"
+#include "core/gait/sure_reserve.h"
 
 namespace regrasp {
 
@@ -197,8 +198,8 @@ ObjectMotion FingerGait::TurnMeanwhile(const ControlTick& tick, const ObjectWren
 double FingerGait::ReserveOf(const ControlTick& tick, int finger) const {
   const FingerPosture now =
       PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, tick.estimate.q));
-  return MotionReserve(tick.hand, finger, now, tick.estimate.p_WO, sign_ * request_.axis_W,
-                       tick.gait.limit_margin, tick.gait.reserve_needed, tick.gait.reach);
+  return SureReserve(tick.hand, finger, now, tick.estimate.p_WO, sign_ * request_.axis_W,
+                     tick.gait.limit_margin, tick.gait.reserve_needed, tick.gait.reach);
 }
 
 }  // namespace regrasp

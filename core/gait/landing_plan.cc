@@ -8,6 +8,7 @@
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"
 #include "core/gait/sure_grasp.h"
+#include "core/gait/sure_reserve.h"
 #include "core/quality/load_margin.h"
 
 namespace regrasp {
@@ -146,8 +147,8 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   landing->blocked = gap < -tick.gait.landing_overlap;
   if (!request_.axis_W.isZero()) {
     landing->reserve =
-        MotionReserve(hand, finger, there, estimate.p_WO, request_.axis_W, tick.gait.limit_margin,
-                      tick.gait.reserve_wanted, tick.gait.reach);
+        SureReserve(hand, finger, there, estimate.p_WO, request_.axis_W, tick.gait.limit_margin,
+                    tick.gait.reserve_wanted, tick.gait.reach);
     score += Share(landing->reserve, tick.gait.reserve_wanted);
     // The finger with the least reserve ends the coming motion for all of them.
     const double short_of =

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/gait/gait_parameters.h"
-#include "core/hand/finger_reach.h"
+#include "core/gait/sure_reserve.h"
 
 namespace regrasp {
 
@@ -15,8 +15,8 @@ double TurnAlong::Update(const ControlTick& tick, const ObjectWrench& wrench, Fi
   if (tick.grasp.contains(next_)) {
     const FingerPosture now = PostureAt(tick.hand, next_, AnglesOf(tick.hand, next_, estimate.q));
     reserve_[next_] =
-        MotionReserve(tick.hand, next_, now, estimate.p_WO, axis_W, parameters.limit_margin,
-                      parameters.along_speed * parameters.along_ahead_s, parameters.reach);
+        SureReserve(tick.hand, next_, now, estimate.p_WO, axis_W, parameters.limit_margin,
+                    parameters.along_speed * parameters.along_ahead_s, parameters.reach);
   }
   double wanted = most;
   for (int i : holds) wanted = std::min(wanted, reserve_[i] / parameters.along_ahead_s);

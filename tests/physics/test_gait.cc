@@ -113,7 +113,7 @@ TEST(Rotate, TurnsOnWhileFingersRegrasp) {
 
 // About this axis the fingertips move along the row of the fingers: the one at its limit must leave
 // first (without that rule seed 301 loses the object about +y), and each stands where its neighbour
-// would land (without waiting for that, seed 323 gives up about -y).
+// would land (without waiting for that, seed 320 gives up about -y).
 TEST(Rotate, TurnsTheObjectAlongTheRowOfTheFingers) {
   const auto turn = [](std::uint64_t seed, double sign) {
     Session session(Config(seed));
@@ -124,7 +124,7 @@ TEST(Rotate, TurnsTheObjectAlongTheRowOfTheFingers) {
     EXPECT_NEAR(job.rotate.angle_rad, 2 * M_PI, 5 * kDegree);
   };
   turn(301, 1);
-  turn(323, -1);
+  turn(320, -1);
 }
 
 TEST(Rotate, NegativeAngleTurnsTheOtherWay) {
