@@ -32,7 +32,7 @@ void DrawRoc(Canvas* canvas, const PredictionPicture& picture, double height) {
   }
   DrawFrame(canvas, panel);
   const double lines = static_cast<double>(legend.size());
-  DrawLegend(canvas, {kRocLeft + 0.36 * kRocWidth, kTop + height - 40 - 27 * lines}, "", legend);
+  DrawLegend(canvas, {kRocLeft + 0.29 * kRocWidth, kTop + height - 40 - 27 * lines}, "", legend);
 }
 
 /// Areas under the ROC with their intervals, best first.
@@ -40,7 +40,7 @@ void DrawForest(Canvas* canvas, const PredictionPicture& picture, double height)
   const double rows = static_cast<double>(picture.predictors.size());
   const Panel panel{Box(kForestLeft, kTop, canvas->width() - kForestLeft - kForestRight, height),
                     NiceAxis(0.4, 1, 6, false, "area under the ROC, 95 % interval"),
-                    Axis{0, rows, rows + 1, ""}};
+                    Axis{0.01, rows, rows + 1, ""}};
   DrawGrid(canvas, panel, true);
   canvas->Line(panel.At(0.5, 0), panel.At(0.5, rows), {kGrey, 1.5, {6, 6}});
   for (std::size_t k = 0; k < picture.predictors.size(); ++k) {
