@@ -276,7 +276,7 @@ void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident,
 }
 
 Json Service::JobAnswer(const JobRecord& job) const {
-  Json json = JobJson(job, hand());
+  Json json = JobJson(job, hand(), dt());
   const auto incident = job_incidents_.find(job.id);
   json["incident"] = incident == job_incidents_.end() ? Json() : incident->second;
   return json;

@@ -7,7 +7,9 @@ namespace regrasp {
 
 Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) {
   if (!context.world.stand_in())
-    return {Verdict::Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+    return {Verdict::Kind::kBadState,
+            "the object is not presented to the hand; `regrasp reset` brings it back",
+            "regrasp reset"};
   const StartOverlap& overlap = context.world.start_overlap();
   if (overlap.depth <= kStartOverlap) return {};
   std::snprintf(refusal_, sizeof(refusal_), "the object begins %.1f mm inside the link %.60s",
