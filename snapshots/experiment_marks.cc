@@ -30,28 +30,33 @@ void DrawShareMark(Canvas* canvas, Point2 at, std::size_t which, Colour colour) 
     canvas->Mark(Marker::kSquare, at, 6, colour, kWhite);
 }
 
-void DrawMarkLegend(Canvas* canvas, const ExperimentPicture& picture,
-                    const std::vector<std::string>& series, bool boxes) {
-  double x = 40;
-  const auto entry = [&](const std::string& text, auto&& draw) {
-    draw(Point2{x + 12, 112});
-    canvas->Text({x + 32, 112}, text, {.size = 17});
-    x += 60 + canvas->TextWidth(text, 17);
-  };
+std::vector<LegendEntry> MarkLegend(const ExperimentPicture& picture,
+                                    const std::vector<std::string>& series, bool boxes) {
+  std::vector<LegendEntry> entries;
   for (std::size_t m = 0; m < picture.groups.front().shares.size(); ++m)
-    entry(picture.groups.front().shares[m].name,
-          [&](Point2 at) { DrawShareMark(canvas, at, m, kInk); });
+    entries.push_back({picture.groups.front().shares[m].name,
+                       [m](Canvas* c, Point2 at) { DrawShareMark(c, at, m, kInk); }});
   if (series.size() > 1)
     for (std::size_t s = 0; s < series.size(); ++s)
-      entry(series[s], [&](Point2 at) {
-        canvas->FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
-      });
+      entries.push_back({series[s], [s](Canvas* c, Point2 at) {
+                           c->FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
+                         }});
   if (boxes)
-    entry("5, 25, 50, 75, 95 % of the trials", [&](Point2 at) {
-      canvas->Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
-      canvas->FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));
-      canvas->Line({at.x, at.y - 9}, {at.x, at.y + 9}, {kGrey, 3});
-    });
+    entries.push_back({"5, 25, 50, 75, 95 % of the trials", [](Canvas* c, Point2 at) {
+                         c->Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
+                         c->FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));
+                         c->Line({at.x, at.y - 9}, {at.x, at.y + 9}, {kGrey, 3});
+                       }});
+  return entries;
+}
+
+void DrawMarkLegend(Canvas* canvas, const std::vector<LegendEntry>& entries) {
+  double x = 40;
+  for (const LegendEntry& entry : entries) {
+    entry.symbol(canvas, {x + 12, 112});
+    canvas->Text({x + 32, 112}, entry.text, {.size = 17});
+    x += 60 + canvas->TextWidth(entry.text, 17);
+  }
 }
 
 }  // namespace regrasp

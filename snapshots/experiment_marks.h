@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "snapshots/canvas.h"
+#include "snapshots/axes.h"
 #include "snapshots/plot_experiment.h"
 
 namespace regrasp {
@@ -17,8 +17,10 @@ std::size_t IndexOf(const std::vector<std::string>& names, const std::string& na
 Colour ColourOfSeries(std::size_t series);
 /// The first share of a group is a full disc, the second an open square.
 void DrawShareMark(Canvas* canvas, Point2 at, std::size_t which, Colour colour);
-/// One line below the title: what marks, colours and, with `boxes`, the boxes of quantiles mean.
-void DrawMarkLegend(Canvas* canvas, const ExperimentPicture& picture,
-                    const std::vector<std::string>& series, bool boxes);
+/// What marks, colours and, with `boxes`, the boxes of quantiles mean.
+std::vector<LegendEntry> MarkLegend(const ExperimentPicture& picture,
+                                    const std::vector<std::string>& series, bool boxes);
+/// The same in one line below the title of a wide sheet.
+void DrawMarkLegend(Canvas* canvas, const std::vector<LegendEntry>& entries);
 
 }  // namespace regrasp

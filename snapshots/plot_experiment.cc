@@ -1,10 +1,12 @@
 #include "snapshots/plot_experiment.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "snapshots/axes.h"
 #include "snapshots/experiment_marks.h"
+#include "snapshots/snapshots.h"
 
 namespace regrasp {
 namespace {
@@ -13,6 +15,9 @@ constexpr double kTopOfAll = 150, kPanelTitle = 30, kBottom = 90, kLeft = 230, k
                  kGap = 46;
 constexpr double kBetween = 50;  // columns
 constexpr double kLabelSize = 18;
+// On a narrow sheet the columns go one below the other, legends to the end.
+constexpr double kNarrowTop = 104, kNarrowMargin = 14, kNarrowGap = 34, kXAxis = 74,
+                 kNarrowLegend = 100;
 constexpr double kRowHeight = 40;    // least
 constexpr double kMostPerMark = 22;  // height
 
@@ -43,77 +48,135 @@ Axis MeasureAxis(const ExperimentPicture& picture, std::size_t which) {
   return NiceAxis(range.lo, range.hi, 5, true, picture.measure_labels.at(which));
 }
 
+/// What stands where on the sheet.
+struct Places {
+  std::vector<std::string> rows, series, panels;
+  std::size_t marks = 0, axes = 1;
+  double row_height = 0;
+  double gap = 0;        ///< between panels of one axis
+  double axis_room = 0;  ///< below the last panel of an axis, where another axis follows there
+  bool narrow = false;
+
+  Places(const ExperimentPicture& picture, bool on_narrow_sheet)
+      : rows(Distinct(picture, &ExperimentGroup::row)),
+        series(Distinct(picture, &ExperimentGroup::series)),
+        panels(Distinct(picture, &ExperimentGroup::panel)),
+        marks(picture.groups.front().shares.size()),
+        axes(1 + picture.measure_labels.size()),
+        narrow(on_narrow_sheet) {
+    const double lines = static_cast<double>(series.size() * std::max<std::size_t>(1, marks));
+    row_height = std::max(kRowHeight, 15 * lines + 12);
+    gap = narrow ? kNarrowGap : kGap;
+    axis_room = narrow ? kXAxis + (named() ? kPanelTitle : 0) : 0;
+  }
+  bool named() const { return !panels.front().empty(); }
+  double block() const { return row_height * static_cast<double>(rows.size()); }
+  /// How many axes stand one below the other.
+  double stacked() const { return narrow ? static_cast<double>(axes) : 1; }
+  /// Of all panels, less what is between them.
+  double Height() const { return stacked() * static_cast<double>(panels.size()) * block(); }
+  double Between() const {
+    return stacked() * (static_cast<double>(panels.size()) - 1) * gap + (stacked() - 1) * axis_room;
+  }
+  /// Least height of the sheet.
+  double SheetHeight() const {
+    const double rest = narrow ? kNarrowTop + kXAxis + kNarrowLegend : kTopOfAll + kBottom;
+    return std::max(narrow ? 300.0 : 600.0,
+                    rest + (named() ? kPanelTitle : 0) + Height() + Between());
+  }
+  Box Of(const Box& room, std::size_t axis, std::size_t panel) const {
+    const double stretch = (room.height - Between()) / Height();
+    const double height = block() * stretch, below = static_cast<double>(panel) * (height + gap);
+    const auto a = static_cast<double>(axis), n = static_cast<double>(axes);
+    if (!narrow) {
+      const double width = (room.width - kBetween * (n - 1)) / n;
+      return {room.x + a * (width + kBetween), room.y + below, width, height};
+    }
+    const double one = (room.height - (n - 1) * axis_room) / n;
+    return {room.x, room.y + a * (one + axis_room) + below, room.width, height};
+  }
+};
+
+void DrawRows(Canvas* canvas, const Places& places, const Panel& panel, bool names) {
+  const double h = panel.area.height / static_cast<double>(places.rows.size());
+  for (std::size_t r = 0; r < places.rows.size(); ++r) {
+    const double y = panel.area.y + h * static_cast<double>(r);
+    if (r > 0)
+      canvas->Line({panel.area.x, y}, {panel.area.x + panel.area.width, y}, {kGridGrey, 1});
+    if (names)
+      canvas->Text({panel.area.x - 14, y + h / 2}, places.rows[r],
+                   {.size = kLabelSize, .align_x = AlignX::kRight});
+  }
+}
+
+/// The marks of a group on one axis: its shares (0), or one of its measures.
+void DrawGroup(Canvas* canvas, const Places& places, const Panel& panel,
+               const ExperimentGroup& group, std::size_t axis) {
+  const double h = panel.area.height / static_cast<double>(places.rows.size());
+  const std::size_t s = IndexOf(places.series, group.series);
+  const double y = panel.area.y + h * static_cast<double>(IndexOf(places.rows, group.row));
+  const auto n = static_cast<double>(places.series.size()),
+             marks = static_cast<double>(places.marks);
+  const double slot = std::min((h - 12) / n, kMostPerMark * marks);
+  const double begin = y + (h - slot * n) / 2 + slot * static_cast<double>(s);
+  if (axis > 0)
+    return DrawQuantiles(canvas, panel, group.measures[axis - 1], begin + slot / 2,
+                         std::min(16.0, slot * 0.6), ColourOfSeries(s));
+  for (std::size_t m = 0; m < group.shares.size(); ++m)
+    DrawShare(canvas, panel, group.shares[m], m,
+              begin + slot * (static_cast<double>(m) + 0.5) / marks, ColourOfSeries(s));
+}
+
+/// Where the panels go. `layout` is used on a narrow sheet.
+Box RoomOf(const Canvas& canvas, const Places& places, const Layout& layout, double top) {
+  double left = places.narrow ? 0 : kLeft;
+  const double margin = places.narrow ? kNarrowMargin : 40;
+  for (const auto& row : places.rows)
+    left = std::max(left, margin + 14 + canvas.TextWidth(row, kLabelSize));
+  const double right = canvas.width() - (places.narrow ? kNarrowMargin + 6 : kRight);
+  const double bottom = places.narrow ? layout.bottom : canvas.height() - kBottom;
+  return {left, top, right - left, bottom - top};
+}
+
 }  // namespace
 
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
   if (picture.groups.empty())
     throw std::runtime_error(path + ": nothing to draw: the summary has no groups");
-  const auto rows = Distinct(picture, &ExperimentGroup::row);
-  const auto series = Distinct(picture, &ExperimentGroup::series);
-  const auto panels = Distinct(picture, &ExperimentGroup::panel);
-  const std::size_t marks = picture.groups.front().shares.size();
-  const double lines = static_cast<double>(series.size() * std::max<std::size_t>(1, marks));
-  const bool named = !panels.front().empty();
-  const double top_of_panels = named ? kTopOfAll + kPanelTitle : kTopOfAll;
-  const double row_height = std::max(kRowHeight, 15 * lines + 12);
-  const double blocks = static_cast<double>(panels.size());
-  const double block = row_height * static_cast<double>(rows.size());
-  const int height = static_cast<int>(
-      std::max(600.0, top_of_panels + blocks * block + (blocks - 1) * kGap + kBottom));
-  Canvas canvas({.height_px = height}, path);
-  const double unit_height = canvas.height(), unit_width = canvas.width();
-  DrawTitle(&canvas, picture.title, picture.facts);
-  DrawMarkLegend(&canvas, picture, series, true);
+  PlotOptions options;
+  options.width_mm = picture.width_mm;
+  const bool narrow = SizeOf(options, 1).narrow;
+  const Places places(picture, narrow);
+  options.height = static_cast<int>(places.SheetHeight());
+  Canvas canvas(SizeOf(options, narrow ? places.SheetHeight() : 0), path);
+  const double below = DrawTitle(&canvas, picture.title, picture.facts);
+  const std::array<LegendGroup, 1> legends = {
+      LegendGroup{"", MarkLegend(picture, places.series, true)}};
+  const Layout layout(canvas, legends);
+  if (narrow)
+    layout.DrawLegends(&canvas, legends);
+  else
+    DrawMarkLegend(&canvas, legends[0].entries);
+  const double top = (narrow ? below : kTopOfAll) + (places.named() ? kPanelTitle : 0);
+  const Box room = RoomOf(canvas, places, layout, top);
 
-  double labels = kLeft;
-  for (const auto& row : rows)
-    labels = std::max(labels, 40 + 14 + canvas.TextWidth(row, kLabelSize));
-  std::vector<Axis> axes = {NiceAxis(0, 100, 5, false, "share of trials, 95 % interval  [%]")};
+  std::vector<Axis> axes = {NiceAxis(
+      0, 100, 5, false, narrow ? "share of trials  [%]" : "share of trials, 95 % interval  [%]")};
   for (std::size_t m = 0; m < picture.measure_labels.size(); ++m)
     axes.push_back(MeasureAxis(picture, m));
-  const auto columns = static_cast<double>(axes.size());
-  const double free = unit_width - labels - kRight - kBetween * (columns - 1);
-  const double width = free / columns;
-  const double stretch =
-      (unit_height - top_of_panels - kBottom - (blocks - 1) * kGap) / (blocks * block);
-
-  for (std::size_t p = 0; p < panels.size(); ++p) {
-    const double top = top_of_panels + static_cast<double>(p) * (block * stretch + kGap);
-    const Axis none{0.2, 0.8, 1, ""};  // no ticks
-    std::vector<Panel> parts;
-    for (const Axis& axis : axes)
-      parts.push_back({Box(labels + static_cast<double>(parts.size()) * (width + kBetween), top,
-                           width, block * stretch),
-                       axis, none});
-    for (const Panel& part : parts) DrawGrid(&canvas, part, p + 1 == panels.size());
-    if (!panels[p].empty()) canvas.Text({labels, top - 16}, panels[p], {.size = 19, .bold = true});
-    const double h = row_height * stretch;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const double y = top + h * static_cast<double>(r);
-      if (r > 0)
-        for (const Panel& part : parts)
-          canvas.Line({part.area.x, y}, {part.area.x + part.area.width, y}, {kGridGrey, 1});
-      canvas.Text({labels - 14, y + h / 2}, rows[r],
-                  {.size = kLabelSize, .align_x = AlignX::kRight});
+  const Axis none{0.2, 0.8, 1, ""};  // no ticks
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    for (std::size_t p = 0; p < places.panels.size(); ++p) {
+      const Panel panel{places.Of(room, a, p), axes[a], none};
+      DrawGrid(&canvas, panel, p + 1 == places.panels.size());
+      if ((a == 0 || narrow) && !places.panels[p].empty())
+        canvas.Text({room.x, panel.area.y - 16}, places.panels[p], {.size = 19, .bold = true});
+      DrawRows(&canvas, places, panel, a == 0 || narrow);
+      for (const auto& group : picture.groups)
+        if (group.panel == places.panels[p]) DrawGroup(&canvas, places, panel, group, a);
+      DrawFrame(&canvas, panel);
     }
-    for (const auto& group : picture.groups) {
-      if (group.panel != panels[p]) continue;
-      const std::size_t s = IndexOf(series, group.series);
-      const double y = top + h * static_cast<double>(IndexOf(rows, group.row));
-      const double n = static_cast<double>(series.size());
-      const double slot = std::min((h - 12) / n, kMostPerMark * static_cast<double>(marks));
-      const double begin = y + (h - slot * n) / 2 + slot * static_cast<double>(s);
-      for (std::size_t m = 0; m < group.shares.size(); ++m)
-        DrawShare(&canvas, parts.front(), group.shares[m], m,
-                  begin + slot * (static_cast<double>(m) + 0.5) / static_cast<double>(marks),
-                  ColourOfSeries(s));
-      for (std::size_t m = 0; m < group.measures.size(); ++m)
-        DrawQuantiles(&canvas, parts[m + 1], group.measures[m], begin + slot / 2,
-                      std::min(16.0, slot * 0.6), ColourOfSeries(s));
-    }
-    for (const Panel& part : parts) DrawFrame(&canvas, part);
   }
-
   canvas.Save();
 }
 

@@ -26,7 +26,8 @@ struct ExperimentGroup {
 };
 
 struct ExperimentPicture {
-  std::string title, facts;
+  std::string title, facts;  ///< facts: separated by " · "
+  double width_mm = 0;       ///< as printed, with text of at least 7 pt; 0: for a screen
   std::vector<std::string> measure_labels;  ///< with their units
   std::vector<ExperimentGroup> groups;
 };
@@ -47,8 +48,8 @@ struct PredictionPicture {
 void PlotPrediction(const PredictionPicture& picture, const std::string& path);
 
 /// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of each measured
-/// quantity beside them. Groups of several panels go one below the other. Throws std::runtime_error
-/// with `path` as the other pictures do (snapshots.h).
+/// quantity beside them (below them, on a narrow sheet). Groups of several panels go one below the
+/// other. Throws std::runtime_error with `path` as the other pictures do (snapshots.h).
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path);
 
 /// Shares against the rows (levels of noise), a panel for each finger, series beside each other.

@@ -1,9 +1,10 @@
-// regrasp-plot-experiment SUMMARY.json PICTURE.png: draws what `regrasp experiment` has summed up.
-// A program of its own, so that `regrasp` does not link OpenCV.
+// regrasp-plot-experiment SUMMARY.json PICTURE [WIDTH_MM]: draws what `regrasp experiment` has
+// summed up. A program of its own, so that `regrasp` does not link OpenCV.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -35,11 +36,11 @@ std::string Joined(const Json& names) {
   return text;
 }
 
-/// ", gait.mode 0, ...": what holds for every trial.
+/// " · gait.mode returning ...": what holds for every trial.
 std::string Settings(const Json& plan) {
   std::string text;
   for (const auto& [name, value] : plan.at("set").items())
-    text += fmt::format(", {} {}", name, value.get<std::string>());
+    text += fmt::format(" · {} {}", name, value.get<std::string>());
   return text;
 }
 
@@ -68,7 +69,7 @@ ExperimentPicture PictureOf(const Json& summary) {
                   : IsSweep(summary) ? "Exploring with one finger: success against sensor noise"
                                      : "Exploring with one finger: how often it succeeds";
   picture.facts = fmt::format(
-      "{}, noise {}, seeds {} to {}, {} trials, regrasp {}",
+      "{} · noise {} · seeds {} to {} · {} trials · regrasp {}",
       rotation ? fmt::format("{:.3g} turn{}", plan.at("turns").get<double>(),
                              plan.at("turns").get<double>() == 1 ? "" : "s")
                : "criterion " + plan.at("criterion").get<std::string>(),
@@ -84,7 +85,7 @@ ExperimentPicture PictureOf(const Json& summary) {
     measures = {{"rate_deg_min", "rate  [°/min]", 1},
                 {"max_position_error_m", "object off its place, most  [mm]", 1000}};
   else if (map)
-    measures = {{"share_of_best", "φ at the end, share of the best within reach  [%]", 100}};
+    measures = {{"share_of_best", "φ at the end, of the best within reach  [%]", 100}};
   else
     measures = {{"phi_true_gain", "gain of φ  [%]", 100}};
   for (const Measure& measure : measures) picture.measure_labels.push_back(measure.label);
@@ -150,8 +151,8 @@ PredictionPicture PredictionOf(const Json& summary) {
 }  // namespace regrasp
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    fmt::print(stderr, "usage: regrasp-plot-experiment SUMMARY.json PICTURE.png\n");
+  if (argc != 3 && argc != 4) {
+    fmt::print(stderr, "usage: regrasp-plot-experiment SUMMARY.json PICTURE [WIDTH_MM]\n");
     return 2;
   }
   try {
@@ -162,7 +163,9 @@ int main(int argc, char** argv) {
       return 0;
     }
     const auto draw = regrasp::IsSweep(summary) ? regrasp::PlotSweep : regrasp::PlotExperiment;
-    draw(regrasp::PictureOf(summary), argv[2]);
+    regrasp::ExperimentPicture picture = regrasp::PictureOf(summary);
+    if (argc == 4) picture.width_mm = std::strtod(argv[3], nullptr);
+    draw(picture, argv[2]);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "regrasp-plot-experiment: {}\n", error.what());

@@ -4,6 +4,7 @@
 #include "snapshots/axes.h"
 #include "snapshots/experiment_marks.h"
 #include "snapshots/plot_experiment.h"
+#include "snapshots/snapshots.h"
 
 namespace regrasp {
 namespace {
@@ -25,10 +26,12 @@ void PlotSweep(const ExperimentPicture& picture, const std::string& path) {
   const std::size_t lines = (panels.size() + columns - 1) / columns;
   const std::size_t marks = picture.groups.front().shares.size();
   const auto n = static_cast<double>(columns), m = static_cast<double>(lines);
-  Canvas canvas(
-      {.height_px = static_cast<int>(kTop + m * kPanelHeight + (m - 1) * kGapY + kBottom)}, path);
+  PlotOptions options;
+  options.width_mm = picture.width_mm;
+  options.height = static_cast<int>(kTop + m * kPanelHeight + (m - 1) * kGapY + kBottom);
+  Canvas canvas(SizeOf(options), path);
   DrawTitle(&canvas, picture.title, picture.facts);
-  DrawMarkLegend(&canvas, picture, series, false);
+  DrawMarkLegend(&canvas, MarkLegend(picture, series, false));
 
   const double width = (canvas.width() - kLeft - kRight - (n - 1) * kGapX) / n;
   for (std::size_t p = 0; p < panels.size(); ++p) {

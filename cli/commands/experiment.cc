@@ -10,6 +10,7 @@
 #include "cli/experiment/paper.h"
 #include "cli/experiment/summary.h"
 #include "cli/experiment/tables.h"
+#include "cli/grammar/units.h"
 
 namespace regrasp::cli {
 namespace {
@@ -18,6 +19,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kGroup = "Results";
 constexpr double kMostSeeds = 1e6;
+
+double PrintedWidth(const std::string& size) {
+  const double width_mm = ParseQuantity(size, "--size", "mm");
+  if (width_mm < 50 || width_mm > 1000)
+    throw CliError(kUsage, fmt::format("--size {}: allowed are 50 to 1000 mm", size),
+                   "regrasp help experiment exploration");
+  return width_mm;
+}
 
 /// What `--format text` shows, and the tables alone as a paper takes them.
 void Print(Context& context, const Invocation& invocation, const Json& summary,
@@ -31,6 +40,9 @@ void Print(Context& context, const Invocation& invocation, const Json& summary,
         SampleSizeTable(summary, ParseNumber(invocation.Text("precision"), "--precision")));
   Json answer = summary;
   answer["output_dir"] = fs::absolute(directory).string();
+  fs::path figure;
+  if (invocation.Has("size"))
+    figure = DrawForPaper(directory, PrintedWidth(invocation.Text("size")));
   std::vector<Json> rows(summary.at("groups").begin(), summary.at("groups").end());
   context.PrintRows(answer, rows, [&] {
     Output& out = context.out();
@@ -43,12 +55,14 @@ void Print(Context& context, const Invocation& invocation, const Json& summary,
     out.Line("trials   " + (directory / "trials.csv").string());
     out.Line("summary  " + (directory / "summary.json").string());
     out.Line("picture  " + (directory / "summary.png").string());
+    if (!figure.empty()) out.Line("figure   " + figure.string());
   });
 }
 
 ExitCode Experiment(Context& context, const Invocation& invocation) {
   const Interruptible interruptible;
   const std::string name = invocation.command->words.substr(std::string("experiment ").size());
+  if (invocation.Has("size")) PrintedWidth(invocation.Text("size"));  // refused before hours
   Plan plan = PlanFromArguments(name, invocation);
   CompletePlan(&plan);
   const fs::path directory = invocation.Text("output");
@@ -111,6 +125,11 @@ Arg TableFormatArg() {
   return arg;
 }
 
+Arg PrintedSizeArg() {
+  return TextArg("size", "--size", "MM",
+                 "also summary.pdf of this printed width, its text at least 7 pt", "no figure");
+}
+
 Arg OutputDirectory() {
   Arg arg =
       TextArg("output", "-o,--output", "DIR", "where results go; unfinished ones go on from there");
@@ -148,7 +167,7 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
         Number("precision", "--precision", ArgKind::kNumber, "P",
                "how many seeds make intervals of +-P: of shares absolute, of all else relative",
                0.001, 0.49, "not told"),
-        OutputDirectory()})
+        PrintedSizeArg(), OutputDirectory()})
     args.push_back(arg);
   return args;
 }
@@ -252,7 +271,7 @@ std::vector<CommandSpec> ExperimentCommands() {
        kGroup,
        "join the shards of an experiment",
        nullptr,
-       {directories, TableFormatArg(), OutputDirectory()},
+       {directories, TableFormatArg(), PrintedSizeArg(), OutputDirectory()},
        Merge},
   };
 }

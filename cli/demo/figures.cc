@@ -200,7 +200,7 @@ void Figures::Tradeoff() {
 }
 
 void Figures::Repeats(int repeats) {
-  Say(fmt::format("{} repeats with other gradient directions", repeats));
+  if (repeats > 0) Say(fmt::format("{} repeats with other gradient directions", repeats));
   int rose = 0, dropped = 0;
   Json records = Json::array();
   for (int i = 0; i < repeats; ++i) {

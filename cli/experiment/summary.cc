@@ -1,6 +1,7 @@
 #include "cli/experiment/summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -95,12 +96,11 @@ std::vector<const Json*> RowsWhere(const Trials& trials, const Json& wanted) {
   return rows;
 }
 
-void Draw(const fs::path& summary, const fs::path& picture) {
-  const std::string program = FindHelper("regrasp-plot-experiment");
-  const std::string in = summary, out = picture;
-  if (WaitForEnd(Start({program, in, out})) != 0)
-    throw CliError(kIo, fmt::format("{} could not draw {}", program, out),
-                   fmt::format("{} {} {}", program, in, out));
+void Draw(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), FindHelper("regrasp-plot-experiment"));
+  if (WaitForEnd(Start(arguments)) != 0)
+    throw CliError(kIo, fmt::format("{} could not draw {}", arguments[0], arguments[2]),
+                   fmt::format("{}", fmt::join(arguments, " ")));
 }
 
 }  // namespace
@@ -170,13 +170,19 @@ Json Summary(const Plan& plan, const Trials& trials) {
   return summary;
 }
 
+fs::path DrawForPaper(const fs::path& directory, double width_mm) {
+  fs::path picture = directory / "summary.pdf";
+  Draw({directory / "summary.json", picture, fmt::format("{}", width_mm)});
+  return picture;
+}
+
 Json WriteResults(const Plan& plan, const Trials& trials, const fs::path& directory) {
   const Json summary = Summary(plan, trials);
   WriteFile(directory / "trials.csv", TrialsCsv(trials));
   if (const std::string maps = MapsCsv(trials); !maps.empty())
     WriteFile(directory / "maps.csv", maps);
   WriteFile(directory / "summary.json", summary.dump(1) + "\n");
-  Draw(directory / "summary.json", directory / "summary.png");
+  Draw({directory / "summary.json", directory / "summary.png"});
   return summary;
 }
 

@@ -26,4 +26,8 @@ Json Summary(const Plan& plan, const Trials& trials);
 /// Returns the summary. Throws CliError.
 Json WriteResults(const Plan& plan, const Trials& trials, const std::filesystem::path& directory);
 
+/// summary.pdf beside summary.json, of this printed width with text of at least 7 pt. Returns its
+/// path. Throws CliError.
+std::filesystem::path DrawForPaper(const std::filesystem::path& directory, double width_mm);
+
 }  // namespace regrasp::cli

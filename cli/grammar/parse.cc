@@ -313,8 +313,15 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
         options->json = json > 0;
         return shell;
       }
-      if (scope.empty()) throw CliError(kUsage, "no command given", HelpHint(scope));
       std::vector<std::string> next;
+      if (scope.empty()) {
+        for (const CommandSpec& command : Commands())
+          if (std::string word = command.words.substr(0, command.words.find(' '));
+              std::find(next.begin(), next.end(), word) == next.end())
+            next.push_back(std::move(word));
+        throw CliError(kUsage, fmt::format("no command given: {}", fmt::join(next, ", ")),
+                       HelpHint(scope));
+      }
       for (const CommandSpec* command : FindCommands(scope))
         if (command->words != scope) next.push_back(command->words.substr(scope.size() + 1));
       throw CliError(kUsage,

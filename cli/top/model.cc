@@ -19,6 +19,10 @@ void DashboardModel::Advance(double time_s) {
   time_s_ = time_s;
 }
 
+void DashboardModel::Remember(const Json& job) {
+  if (At(job, "method") == "explore") exploration_job_ = job;
+}
+
 void DashboardModel::Add(const std::string& topic, const Json& sample) {
   if (topic == "events") {
     const std::string kind = Plain(At(sample, "kind"));
@@ -34,7 +38,7 @@ void DashboardModel::Add(const std::string& topic, const Json& sample) {
   if (At(sample, "time_s").is_number()) Advance(At(sample, "time_s"));
   if (topic == "status") {
     status_ = sample;
-    if (At(At(sample, "job"), "method") == "explore") exploration_job_ = At(sample, "job");
+    Remember(At(sample, "job"));
   } else if (topic == "contacts") {
     contacts_ = sample;
   } else if (topic == "quality") {

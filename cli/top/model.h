@@ -35,6 +35,9 @@ class DashboardModel {
   /// When time runs backwards a new run has begun: curves and slips are forgotten.
   void Add(const std::string& topic, const Json& sample);
 
+  /// The record of a job that began before; oldest first.
+  void Remember(const Json& job);
+
   const Json& status() const { return status_; }
   const Json& contacts() const { return contacts_; }
   const Json& quality() const { return quality_; }

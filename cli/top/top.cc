@@ -69,6 +69,8 @@ class Dashboard {
     asked_.clear();
     const Json past = client.Call("events", {{"count", 50}});
     for (const Json& event : At(past, "events")) model_.Add("events", event);
+    const Json jobs = client.Call("job.list", Json::object());
+    for (const Json& job : At(jobs, "jobs")) model_.Remember(job);
     for (const char* topic : {"status", "contacts", "quality"})
       model_.Add(topic, client.Call(topic, Json::object()));
     for (const char* topic : {"status", "contacts", "quality", "events"}) {

@@ -105,7 +105,7 @@ Json IncidentJson(const Incident& incident, const HandModel& hand) {
             {"load_margin_n", incident.parameters.gait.margin_min},
             {"friction_estimate", incident.parameters.control.friction_estimate}}},
           {"findings", FindingsJson(incident, hand)},
-          {"job", incident.job.id != 0 ? JobJson(incident.job, hand) : Json()},
+          {"job", incident.job.id != 0 ? JobJson(incident.job, hand, incident.dt) : Json()},
           {"events", std::move(events)},
           {"samples", SamplesJson(incident, hand)}};
 }

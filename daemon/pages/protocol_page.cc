@@ -139,7 +139,9 @@ std::string ProtocolPage() {
       "## A job's record\n\n"
       "`id, method, state` (`queued`, `running`, `done`, `failed`, `cancelled`)`, error, progress` "
       "(0 ... 1)`, "
-      "start_tick, end_tick, finished`, and what its method says above.\n\n";
+      "start_tick, end_tick, started_s, ended_s` (the same moments in simulated seconds)`, "
+      "finished`, "
+      "and what its method says above.\n\n";
   page += ParameterSection() + MeasureSection();
   page += "## Fields of run files\n\n" + RunFieldTable() + "\n";
   page +=

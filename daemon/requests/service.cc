@@ -55,7 +55,7 @@ Outcome Service::Call(const std::string& method, const JsonIn& params, Client* c
 }
 
 Json Service::JobAnswer(const JobRecord& job) const {
-  Json json = JobJson(job, hand());
+  Json json = JobJson(job, hand(), dt());
   const auto incident = job_incidents_.find(job.id);
   json["incident"] = incident == job_incidents_.end() ? Json() : incident->second;
   return json;

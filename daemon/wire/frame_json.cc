@@ -240,7 +240,10 @@ Json NoiseJson(const NoiseLevels& n) {
           {"latency_s", n.latency_s}};
 }
 
-Json JobJson(const JobRecord& job, const HandModel& hand) {
+Json JobJson(const JobRecord& job, const HandModel& hand, double dt) {
+  const auto seconds = [dt](std::int64_t tick) {
+    return tick < 0 ? Json() : Json(TickSeconds(tick, dt));
+  };
   const bool ended = job.state != JobState::kQueued && job.state != JobState::kRunning;
   Json json = {{"id", job.id},
                {"method", Name(job.method)},
@@ -248,7 +251,9 @@ Json JobJson(const JobRecord& job, const HandModel& hand) {
                {"error", job.error[0] ? Json(job.error) : Json()},
                {"progress", job.progress},
                {"start_tick", Tick(job.start_tick)},
-               {"end_tick", Tick(job.end_tick)}};
+               {"end_tick", Tick(job.end_tick)},
+               {"started_s", seconds(job.start_tick)},
+               {"ended_s", seconds(job.end_tick)}};
   ResultWriter writer{json, hand};
   const_cast<JobRecord&>(job).ResultFields(writer);  // only reads
   json["finished"] = ended;

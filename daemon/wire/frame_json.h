@@ -25,8 +25,9 @@ Json GaitJson(const GaitFrame& gait, const HandModel& hand);
 Json EventNewsJson(const Event& event, const HandModel& hand, double dt);
 /// Preset name and every level.
 Json NoiseJson(const NoiseLevels& levels);
-/// One job record, with the fields of its method at the top level.
-Json JobJson(const JobRecord& job, const HandModel& hand);
+/// One job record, with the fields of its method at the top level; `dt` [s] turns its ticks into
+/// times.
+Json JobJson(const JobRecord& job, const HandModel& hand, double dt);
 /// A parameter's value as `param.set` takes it: a number, three, true, false or a word.
 Json ParameterValueJson(const ParameterInfo& info, const Vector3d& value);
 

@@ -43,6 +43,9 @@ class Words(Case):
         self.assertIn("'noise' needs a further word: ", asked)
         for word in ("show", "set", "preset", "off"):
             self.assertIn(word, asked)
+        everything = self.refused(2)[0]
+        for word in ("grasp", "experiment", "plot", "shell"):
+            self.assertIn(word, everything)
         self.assertIn("'stop' has nothing to wait for", self.refused(2, "stop", "--wait")[0])
 
     def test_numbers_must_be_finite_and_in_range(self):

@@ -1,13 +1,19 @@
 """The lockstep clock: what comes out depends on what was asked, not on when; and a simulation that stands still says so."""
 
 import json
+import math
+import os
 import pathlib
 import re
 import subprocess
 import sys
 import unittest
 
-from harness import DaemonCase, SOURCE
+from harness import BIN, DaemonCase, SOURCE
+
+os.environ["REGRASP_BIN_DIR"] = str(BIN)
+sys.path.insert(0, str(SOURCE / "cli" / "python"))
+import regrasp  # pylint: disable=wrong-import-position
 
 LINES = ["reset --seed 1", "grasp --wait", "explore ring --wait", "rotate --angle 90 --wait"]
 
@@ -28,13 +34,27 @@ class Lockstep(DaemonCase):
         self.assertRegex(first[0][3], r"angle +[\d.]+° \(0\.2")
         self.json("truth"), self.json("quality"), self.json("events")  # looking takes no time
         self.assertEqual(self.typed(), first)
-        with subprocess.Popen([sys.executable, "-c", "while True: pass"]) as busy:
-            self.addCleanup(busy.kill)
+        busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2)]  # pylint: disable=consider-using-with
+        try:
             self.assertEqual(self.typed(), first)
-            busy.kill()
+        finally:
+            for process in busy:
+                process.kill()
+                process.wait()
         self.expect(0, "down")
         self.expect(0, "up", "--speed", "max", "--seed", "1", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
         self.assertEqual(self.typed(), first)
+
+    def test_the_python_module_gives_the_same_figures(self):
+        for line in LINES[:1]:
+            self.expect(0, *line.split())
+        typed = [self.json(*line.split()) for line in LINES[1:]]
+        with regrasp.start(seed=1) as hand:
+            called = [hand.grasp().wait(), hand.explore("ring").wait(), hand.rotate(angle_rad=math.radians(90)).wait()]
+            for record in [*typed, *called]:
+                del record["id"]
+            self.assertEqual(called, typed)
+            self.assertEqual(hand.status()["state_hash"], self.json("status")["state_hash"])
 
     def test_time_stands_still_between_jobs(self):
         self.expect(0, "grasp", "--wait")

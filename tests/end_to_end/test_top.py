@@ -43,6 +43,13 @@ class Sizes(Top):
                                      "object", "explore", "ROLE", "CONTACT", "FORCE", "LIMIT", "MANIP", "Manipulability φ.*, 30 s", "Stability .*, 30 s", r"\[active\]",
                                      "Events", "s  holding"])
 
+    def test_what_was_explored_before_is_known(self):
+        self.expect(0, "grasp", "--wait")
+        self.expect(1, "explore", "ring", "--max-cycles", "50", "--wait")
+        self.expect(0, "rotate", "--angle", "5", "--wait")
+        session = self.top(24, 80)
+        session.wait("last: ring")
+
     def test_panels_go_in_order_at_60x15(self):
         self.check(self.top(15, 60), 15, 60, ["noise paper", "object", "explore", "LIMIT", "Manipulability", "Stability"], ["Events"])
 

@@ -30,6 +30,7 @@ TEST_F(Jobs, AreQueuedWhilePausedAndStartAtTheNextTick) {
   EXPECT_EQ(record["state"], "running");
   EXPECT_EQ(record["start_tick"], 0);
   EXPECT_EQ(record["end_tick"], Json());
+  EXPECT_EQ(record["ended_s"], Json());
   EXPECT_EQ(client->Result("status")["state"], "grasping");
 }
 
@@ -124,13 +125,15 @@ TEST_F(Jobs, AnExplorationsRecordIsComplete) {
   Step(12000);
   const Json record = Wait(job);
   for (const char* field :
-       {"finger", "criterion", "converged", "reason", "cycles", "phi_initial", "phi_final",
-        "path_length_m", "seed", "phi_true_initial", "phi_true_final", "id", "method", "state",
-        "error", "progress", "start_tick", "end_tick"})
+       {"finger",         "criterion",  "converged",     "reason",    "cycles",
+        "phi_initial",    "phi_final",  "path_length_m", "seed",      "phi_true_initial",
+        "phi_true_final", "id",         "method",        "state",     "error",
+        "progress",       "start_tick", "end_tick",      "started_s", "ended_s"})
     EXPECT_TRUE(record.contains(field)) << field;
   EXPECT_EQ(record["finger"], "ring");
   EXPECT_EQ(record["seed"], 4);
   EXPECT_EQ(record["start_tick"], 6000);
+  EXPECT_EQ(record["started_s"], 6.0);
   EXPECT_FALSE(record["reason"].is_null());
   const Json quality = client->Result("quality");
   EXPECT_EQ(quality["fingers"].size(), 5u);

@@ -8,7 +8,9 @@ namespace regrasp {
 
 Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) {
   if (!context.world.stand_in())
-    return {Verdict::Kind::kBadState, "the object is not presented to the hand", "regrasp reset"};
+    return {Verdict::Kind::kBadState,
+            "the object is not presented to the hand; `regrasp reset` brings it back",
+            "regrasp reset"};
   refusal_ = OverlapText(context.world.start_overlap(), context.now.hand);
   if (refusal_.front() == 0) return {};
   return {Verdict::Kind::kBadState, refusal_.data(),
