@@ -154,7 +154,7 @@ class Again(Case):
     def test_a_connection_that_was_closed_is_made_again(self):
         status = {"state": "holding", "version": "9.9.9", "time_s": 1.5, "clients": 1}
         fake = FakeDaemon(self.socket, {"events": lambda _: {"events": [{"kind": "x", "t_s": 1, "text": "once only"}]}, "status": lambda _: status,
-                                        "contacts": lambda _: {}, "quality": lambda _: {}, "subscribe": lambda _: {"sub": 1}})
+                                        "contacts": lambda _: {}, "quality": lambda _: {}, "job.list": lambda _: {"jobs": []}, "subscribe": lambda _: {"sub": 1}})
         self.addCleanup(fake.close)
         session = Session([REGRASP, "-s", self.socket, "top"])
         self.addCleanup(session.child.close)
