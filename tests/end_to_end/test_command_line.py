@@ -159,7 +159,10 @@ class Evaluate(Case):
     def test_reads_standard_input_and_writes_csv(self):
         table = self.expect(0, "--csv", "evaluate", "-", stdin=json.dumps(GRASP)).stdout.splitlines()
         self.assertEqual(len(table), 2)
-        self.assertEqual(table[0].split(",")[0], "epsilon")
+        row = dict(zip(table[0].split(","), table[1].split(",")))
+        for name in ("epsilon", "volume", "min_singular_value", "sqrt_det", "isotropy", "force_closure"):
+            self.assertIn(name, row)
+        self.assertAlmostEqual(float(row["min_singular_value"]), math.sqrt(1.5), delta=1e-9)
 
     def test_refuses_bad_files_by_name(self):
         for text in ["", "{", "[]", '{"contacts": 1}', json.dumps({**GRASP, "cone_edge": 8}), json.dumps(GRASP).replace("0.8", "NaN", 1)]:

@@ -239,7 +239,7 @@ class Memory(SystemCase):
             for number in (1, 3, 9, 40, 200, 1000):
                 # A new client each time: who is accepted, asks and leaves while memory is short.
                 countdown.set(number)
-                wire = Wire(self.socket)
+                wire = Connection(self.socket)
                 answer = wire.ask(method, **params)
                 wire.close()
                 countdown.set(0)
@@ -248,7 +248,7 @@ class Memory(SystemCase):
                 self.assertNotIn("bad_alloc", json.dumps(answer))
                 other.result("version")  # the reserve is taken again with the next request
         other.close()
-        wire = Wire(self.socket)
+        wire = Connection(self.socket)
         while wire.result("status")["clients"] != 1:
             pass
         while b"memory was short: the reserve was used, and is there again" not in (self.dir / "log").read_bytes():
@@ -283,7 +283,7 @@ class Turns(SystemCase):
     def test_one_client_with_many_lines_does_not_hold_the_others_up(self):
         watcher = self.start("--clock", "lockstep", "--speed", "max")
         watcher.result("subscribe", topic="events")
-        many, one = Wire(self.socket), Wire(self.socket)
+        many, one = Connection(self.socket), Connection(self.socket)
         many.result("version")
         one.result("version")
         # Both are there when the daemon next looks, the 300 lines first.

@@ -41,6 +41,9 @@ TEST(Fields, NameEveryMemberOfTheirHeader) {
   const std::map<std::string, std::set<std::string>> unnamed = {
       {"core/control/contact_force_qp.h", {"forces_"}},
       {"core/control/estimate.h", {"dt_"}},
+      {"core/session/activity/grasp.h", {"refusal_"}},
+      {"core/session/judge.h", {"hand_"}},
+      {"core/shape/felt_surface.h", {"parameters_"}},
       {"core/control/hybrid_controller.h", {"dt_", "problem_", "torque_"}},
       {"core/sensing/sensors.h", {"dt_", "kinematics_", "tips_"}},
       {"core/session/quality_monitor.h", {"epsilon_"}},

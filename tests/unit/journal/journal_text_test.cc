@@ -75,7 +75,8 @@ constexpr int CountMembers() {
 TEST(JournalText, TheParameterTableHoldsEveryParameter) {
   constexpr int kMembers = CountMembers<ObjectParameters>() + CountMembers<StartParameters>() +
                            CountMembers<ControlParameters>() +
-                           CountMembers<ExplorationParameters>() + CountMembers<GaitParameters>();
+                           CountMembers<ExplorationParameters>() + CountMembers<GaitParameters>() +
+                           CountMembers<ShapeParameters>();
   constexpr int kGravity = 1;
   EXPECT_EQ(ParameterTable().size(), static_cast<std::size_t>(kMembers + kGravity));
 }
