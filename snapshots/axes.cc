@@ -247,6 +247,18 @@ double DrawTitle(Canvas* canvas, const std::string& title, const std::string& fa
     const std::string longer = line.empty() ? fact : line + std::string(kBetween) + fact;
     if (!line.empty() && canvas->TextWidth(longer, 16) > room) put();
     line = line.empty() ? fact : line + std::string(kBetween) + fact;
+    // A list that is longer than a line goes on in the next one.
+    while (canvas->TextWidth(line, 16) > room) {
+      std::size_t end_of_line = line.size();
+      do end_of_line = line.rfind(", ", end_of_line - 1);
+      while (end_of_line != std::string::npos && end_of_line > 0 &&
+             canvas->TextWidth(line.substr(0, end_of_line + 1), 16) > room);
+      if (end_of_line == std::string::npos || end_of_line == 0) break;
+      const std::string more = line.substr(end_of_line + 2);
+      line.resize(end_of_line + 1);
+      put();
+      line = more;
+    }
   }
   put();
   return y + (narrow ? 2 : 8);

@@ -97,6 +97,8 @@ Axis AxisOver(std::initializer_list<std::span<const double>> columns, bool from_
   Range range;
   if (from_zero) range.Add(0);
   for (const auto& column : columns) range.Add(column);
+  constexpr double kNothing = 0.02;  // of the range: so little below 0 needs no room of its own
+  if (from_zero && -range.lo < kNothing * range.hi) range.lo = 0;
   const Range padded = range.Padded(from_zero ? 0 : 0.04, 0.06);
   Axis axis = NiceAxis(padded.lo, padded.hi, 4, true, std::move(label));
   axis.short_label = std::move(short_label);
