@@ -2,24 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/exploration/exploration_parameters.h"
-#include "core/gait/gait_parameters.h"
-#include "core/shape/felt_surface.h"
-#include "tests/unit/control/held_sphere.h"
+#include "tests/unit/gait/held_tick.h"
 
 namespace regrasp {
 namespace {
 
-struct HopTest : testing::Test {
-  LoadedScenario model = ShadowHand();
-  const HandModel& hand = model.hand;
-  Estimate estimate = TouchingEstimate(hand, GraspPosture(hand));
-  FeltSurface felt;
-  LoadMargins margins;
-  Vector3d gravity_W = model.scenario.gravity_W;
-  ControlParameters control;
-  ExplorationParameters exploration;
-  GaitParameters gait;
+struct HopTest : HeldTick {
   const int finger = hand.FindFinger("ring");
   const FingerEstimate stands = estimate.fingers[finger];
   Hop hop;
@@ -32,12 +20,6 @@ struct HopTest : testing::Test {
     target.p_WF = estimate.p_WO + aside * (stands.p_WF - estimate.p_WO);
     target.normal_W = aside * stands.normal_W;
     hop.Start(Tick(), finger, true);
-  }
-  ControlTick Tick() {
-    return {hand,    estimate,    FingerSet::First(hand.num_fingers()),
-            margins, felt,        gravity_W,
-            control, exploration, gait,
-            1e-3};
   }
   /// One tick, in which the finger touches or does not.
   Hop::Phase Step(bool touches) {

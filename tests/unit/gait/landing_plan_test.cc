@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/gait/sure_grasp.h"
 #include "tests/unit/gait/held_tick.h"
@@ -125,7 +126,7 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     // The object turns nearly as far as the finger follows.
     const Vector3d r = at_home.p_WF - estimate.p_WO;
     FingerPosture at_end = at_home;
-    for (double angle = 0; angle <= reserve - 0.1; angle += 0.02)
+    for (double angle = 0; angle <= reserve - 0.12; angle += 0.02)
       at_end = ReachFor(hand, finger, at_end,
                         estimate.p_WO + FromRotationVector(angle * axis_W) * r, 0.0, 10);
     JointVector q = estimate.q;
@@ -136,7 +137,7 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     const double rest =
         MotionReserve(hand, finger, at_end, estimate.p_WO, axis_W, gait.limit_margin, 3.0);
     ASSERT_LT(rest, 0.19);
-    ASSERT_GT(rest, 0.05);
+    ASSERT_GT(rest, 0.06);  // a whole step of what the gait counts on
     // Only where it stands the object has been felt.
     felt.Reset();
     const Vector3d here = estimate.fingers[finger].p_WC - estimate.p_WO;
@@ -150,6 +151,13 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     Plan(&plan);
     EXPECT_FALSE(plan.landing().stays);
     EXPECT_GT(plan.landing().reserve, 0.5 * gait.step_rad);
+    // It is the coming step that it may not hold up: for hardly any there is less to leave for.
+    const double gain = plan.landing().gain;
+    const double step = std::exchange(gait.step_rad, 0.01);
+    plan.Start(request);
+    Plan(&plan);
+    EXPECT_GT(gain, plan.landing().gain + 0.5);
+    gait.step_rad = step;
     estimate = TouchingEstimate(hand, GraspPosture(hand));
   }
 }
