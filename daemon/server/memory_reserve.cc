@@ -1,8 +1,8 @@
 #include "daemon/server/memory_reserve.h"
 
+#include <sys/mman.h>
+
 #include <atomic>
-#include <cstdlib>
-#include <cstring>
 #include <new>
 
 namespace regrasp {
@@ -11,18 +11,31 @@ namespace {
 std::size_t size = 0;  // 0: not installed
 std::atomic<void*> block{nullptr};
 std::atomic<bool> let_go{false};
+std::atomic<unsigned> times{0};  // that it was let go
 
+// Not malloc's: what it gives back may stay with one thread's arena.
 void* Take() {
-  void* const taken = std::malloc(size);
-  if (taken != nullptr) std::memset(taken, 1, size);  // the pages themselves, not a promise of them
-  return taken;
+  void* const taken = ::mmap(nullptr, size, PROT_READ | PROT_WRITE,
+                             MAP_PRIVATE | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
+  return taken == MAP_FAILED ? nullptr : taken;
 }
 
+void GiveBack(void* taken) { ::munmap(taken, size); }
+
+// Each thread tries once more for every time that the reserve was let go, by whomever.
 void LetGo() {
-  void* const kept = block.exchange(nullptr);
-  if (kept == nullptr) throw std::bad_alloc();
-  std::free(kept);
-  let_go = true;
+  thread_local unsigned seen = 0;
+  if (void* const kept = block.exchange(nullptr)) {
+    GiveBack(kept);
+    let_go = true;
+    seen = ++times;
+    return;
+  }
+  if (const unsigned now = times; now != seen) {
+    seen = now;
+    return;
+  }
+  throw std::bad_alloc();
 }
 
 }  // namespace
@@ -38,7 +51,7 @@ bool MemoryReserve::Spent() {
   void* const taken = Take();
   if (taken == nullptr) return true;
   void* none = nullptr;
-  if (!block.compare_exchange_strong(none, taken)) std::free(taken);
+  if (!block.compare_exchange_strong(none, taken)) GiveBack(taken);
   return false;
 }
 

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <thread>
 #include <vector>
 
 namespace regrasp {
@@ -27,10 +28,8 @@ void LimitMemory(std::size_t more) {
   ::setrlimit(RLIMIT_AS, &limit);
 }
 
-int Exhaust() {
-  MemoryReserve::Install(4 * kMiB);
-  if (MemoryReserve::Spent() || MemoryReserve::WasLetGo()) return 1;
-  LimitMemory(32 * kMiB);
+/// Takes all that there is; 0, or which expectation failed.
+int TakeAll() {
   std::vector<std::unique_ptr<char[]>> held;
   held.reserve(1000);
   bool let_go_before_failing = false;
@@ -45,6 +44,23 @@ int Exhaust() {
   if (!MemoryReserve::Spent()) return 3;
   held.clear();
   return MemoryReserve::Spent() ? 4 : 0;
+}
+
+/// More than once, and in another thread, whose memory comes from elsewhere.
+int Exhaust() {
+  MemoryReserve::Install(4 * kMiB);
+  if (MemoryReserve::Spent() || MemoryReserve::WasLetGo()) return 1;
+  int in_thread = 0;
+  std::thread other([&] {
+    std::make_unique<char[]>(1);  // its arena is there
+    LimitMemory(32 * kMiB);
+    in_thread = TakeAll();
+  });
+  other.join();
+  if (in_thread != 0) return in_thread;
+  for (int k = 0; k < 2; ++k)
+    if (const int failed = TakeAll(); failed != 0) return 10 * (k + 1) + failed;
+  return 0;
 }
 
 TEST(MemoryReserve, IsLetGoBeforeAnAllocationFailsAndTakenAgainWhenThereIsMore) {
