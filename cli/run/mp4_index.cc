@@ -32,8 +32,8 @@ struct Box {
 };
 
 Box BoxAt(std::string_view data, std::size_t at, std::size_t end) {
+  std::uint64_t size = Number(data, at, 8) >> 32;  // all of the head is there
   Box box{at, at + 8, 0, data.substr(at + 4, 4)};
-  std::uint64_t size = Number(data, at, 4);
   if (size == 1) {
     size = Number(data, at + 8, 8);
     box.content += 8;

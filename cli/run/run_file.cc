@@ -81,10 +81,14 @@ void Finish(const RunFile& file, Segment* segment) {
   });
   if (!file.lost.empty()) return Cut(segment);
   const std::size_t known = segment->journal->entries.size();
-  for (const Segment::State& state : segment->states)
-    if (state.commands > known)
-      throw JournalError(fmt::format("tick {}: a state after {} commands, where {} are known",
-                                     state.tick, state.commands, known));
+  const auto check = [known](const auto& states) {
+    for (const auto& state : states)
+      if (state.commands > known)
+        throw JournalError(fmt::format("tick {}: a state after {} commands, where {} are known",
+                                       state.tick, state.commands, known));
+  };
+  check(segment->states);
+  check(segment->saved);
 }
 
 using Wanted = std::function<bool(const McapChunk&)>;

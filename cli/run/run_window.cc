@@ -1,8 +1,11 @@
 #include "cli/run/run_window.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/journal/check.h"
 #include "core/journal/saved_state.h"
 
 namespace regrasp::run {
@@ -61,7 +64,11 @@ void RunWindow::FindEnd() {
   std::uint64_t end = segment().offset_ns;
   for (const McapChunk& chunk : chunks_) end = std::max(end, chunk.end);
   if (chunks_.empty()) ReadMcap(path_, [&](const McapMessage& m) { end = std::max(end, m.time); });
-  last_tick_ = std::llround(static_cast<double>(end - segment().offset_ns) / dt_ns);
+  const double ticks = static_cast<double>(end - segment().offset_ns) / dt_ns;
+  if (!(ticks <= static_cast<double>(kMaxTick)))
+    throw std::runtime_error(
+        fmt::format("{}: ends at tick {:.4g}; allowed are at most {}", path_, ticks, kMaxTick));
+  last_tick_ = std::llround(ticks);
 }
 
 std::optional<RunSavedState> RunWindow::FindState() const {
