@@ -166,7 +166,7 @@ class Maker {
           best_ = found;
           guess_.layout = layout;
         }
-    hand_ = best_.model.hand;
+    hand_ = best_.any() ? best_.model.hand : all;
     for (const HandLayout::Finger& finger : whole.fingers)
       if (std::ranges::none_of(guess_.layout.fingers,
                                [&](const auto& kept) { return kept.name == finger.name; }))
@@ -268,8 +268,8 @@ class Maker {
           "no finger opposes the others: the fingertips cannot hold the ball against "
           "every small push");
     for (const std::string& name : left_out_)
-      remarks.push_back(fmt::format(
-          "{} is left out and locked: it cannot touch the ball together with the others", name));
+      remarks.push_back(
+          fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
     if (hand_.num_fingers() < 3)
       remarks.push_back("two fingers: `grasp` needs three contacts");
     else if (hand_.num_fingers() == 3)

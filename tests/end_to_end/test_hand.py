@@ -115,8 +115,14 @@ class Hand(Case):
         told = json.loads(done.stdout)
         self.assertEqual([finger["name"] for finger in told["fingers"]], ["finger1", "finger2", "finger3"])
         self.assertTrue(told["held"])
-        self.assertIn("finger4 is left out and locked", "\n".join(told["remarks"]))
+        self.assertIn("finger4 is left out and locked: with it no grasp was found that holds", "\n".join(told["remarks"]))
         self.assertIn("arm4_near", (self.dir / "far.toml").read_text().split("[locked_deg]")[1])
+
+    def test_three_fingers_that_cannot_touch_together_are_told(self):
+        far = re.sub(r'(<child link="arm3a"/><origin xyz=)"[^"]*"', r'\1"0 -0.5 0"', hand(3))
+        error = self.refused(1, "-q", "hand", "new", self.write("far.urdf", far), "-o", self.dir / "far.toml")
+        self.assertIn("no posture found in which 3 fingertips touch a ball of 50 mm", error)
+        self.assertFalse((self.dir / "far.toml").exists())
 
     def test_usage(self):
         four = self.write("four.urdf", hand(4))
