@@ -76,7 +76,7 @@ class LandingPlan {
   bool Step(const ControlTick& tick);
   const Request& request() const { return request_; }
   const Landing& landing() const { return best_; }
-  /// Links of other fingers are in the way wherever it would land.
+  /// Links of other fingers are in the way where it would land best by the terms that are cheap.
   bool crowded() const { return crowded_; }
   template <typename V>
   void Fields(V& v) {

@@ -10,13 +10,12 @@
 
 namespace regrasp {
 
-/// MotionReserve() rounded down to steps of 0.06 rad, at most `most` [rad].
+/// MotionReserve() rounded down to its steps (kTurnStep), at most `most` [rad].
 inline double SureReserve(const HandModel& hand, int finger, const FingerPosture& from,
                           const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most,
-                          const ReachRule& rule = {}) {
-  constexpr double kStep = 0.06;
+                          const ReachRule& rule) {
   const double reserve = MotionReserve(hand, finger, from, p_WO, axis_W, margin, most, rule);
-  return reserve >= most ? most : kStep * std::floor(reserve / kStep);
+  return reserve >= most ? most : kTurnStep * std::floor(reserve / kTurnStep);
 }
 
 }  // namespace regrasp

@@ -8,7 +8,6 @@ namespace {
 constexpr double kDamping2 = 1e-6;     // of the pseudo-inverse [m²]
 constexpr double kClose = 2e-4;        // the tip is there [m]
 constexpr double kLongestStep = 0.35;  // per joint and step [rad]
-constexpr double kTurnStep = 0.06;     // of the object [rad]
 
 Bone BoneOf(const Link& link, const Isometry3d& X_WL) {
   for (const Shape& shape : link.shapes)

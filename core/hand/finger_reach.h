@@ -39,13 +39,15 @@ FingerVector AnglesOf(const HandModel& hand, int finger, const JointVector& q);
 FingerPosture ReachFor(const HandModel& hand, int finger, const FingerPosture& from,
                        const Vector3d& p_WF, double margin, int steps, const ReachRule& rule = {});
 
+inline constexpr double kTurnStep = 0.06;  ///< of the object, in which MotionReserve() goes [rad]
+
 /// Motion reserve [rad]: how far the object can turn about `axis_W` (unit, sense included) through
 /// `p_WO` with this finger following, until one of its joints comes within `margin` [rad] of its
 /// limit: q += J⁺ (ω × r) in small steps, with a pull away from the limits in the null space. At
 /// most `most`, which is also that of no axis (zero).
 double MotionReserve(const HandModel& hand, int finger, const FingerPosture& from,
                      const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most,
-                     const ReachRule& rule = {});
+                     const ReachRule& rule);
 
 /// Distance between the surfaces of two links; negative where they overlap [m].
 double Gap(const Bone& one, const Bone& two);

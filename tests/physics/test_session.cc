@@ -192,7 +192,7 @@ TEST(Session, ExploringByReserveLeavesMoreWayForTheTurn) {
       const auto reserve = [&] {
         const WorldState& truth = run.session.truth();
         const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, truth.q));
-        return MotionReserve(hand, finger, now, truth.p_WO, axis, 0.04, kMostReserve);
+        return MotionReserve(hand, finger, now, truth.p_WO, axis, 0.04, kMostReserve, {});
       };
       const double before = reserve();
       ASSERT_EQ(run.Give(CommandType::kExplore,

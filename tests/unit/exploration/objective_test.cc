@@ -79,8 +79,8 @@ TEST_F(ObjectiveTest, ReserveCountsManipulabilityAndAMarginThatIsMissing) {
     return value.phi;
   };
   const FingerPosture now = PostureAt(hand_, 2, AnglesOf(hand_, 2, estimate_.q));
-  const double reserve =
-      MotionReserve(hand_, 2, now, estimate_.p_WO, axis, exploration.limit_margin, kMostReserve);
+  const double reserve = MotionReserve(hand_, 2, now, estimate_.p_WO, axis,
+                                       exploration.limit_margin, kMostReserve, {});
   EXPECT_GT(reserve, 0.05);
   EXPECT_LT(reserve, kMostReserve);
   const double manipulability = 0.3 * estimate_.fingers[2].manipulability;

@@ -60,7 +60,7 @@ TEST_F(LandingPlanTest, ReserveShrinksByWhatTheObjectHasTurned) {
   for (int i = 0; i < hand.num_fingers(); ++i) {
     const FingerPosture posture = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
     const double reserve =
-        MotionReserve(hand, i, posture, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0);
+        MotionReserve(hand, i, posture, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0, gait.reach);
     if (reserve > all) finger = i;
     all = std::max(all, reserve);
   }
@@ -70,7 +70,7 @@ TEST_F(LandingPlanTest, ReserveShrinksByWhatTheObjectHasTurned) {
   const Vector3d r = FromRotationVector({0, 0, -0.2}) * (now.p_WF - estimate.p_WO);
   const FingerPosture turned = ReachFor(hand, finger, now, estimate.p_WO + r, 0.0, 20);
   const double rest =
-      MotionReserve(hand, finger, turned, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0);
+      MotionReserve(hand, finger, turned, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0, gait.reach);
   EXPECT_NEAR(all - rest, 0.2, 0.13);  // steps of 0.06 rad, and another way through the null space
 }
 
@@ -116,13 +116,15 @@ TEST_F(LandingPlanTest, KeepsOffGroundThatNobodyHasFelt) {
 // yet rather than stay on known ground.
 TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
   const Vector3d axis_W = -Vector3d::UnitZ();
+  int tested = 0;
   for (int finger = 0; finger < hand.num_fingers(); ++finger) {
     SCOPED_TRACE(hand.fingers[finger].name);
     const LandingPlan::Request request = Home(finger);
     const FingerPosture at_home = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
-    const double reserve =
-        MotionReserve(hand, finger, at_home, estimate.p_WO, axis_W, gait.limit_margin, 3.0);
+    const double reserve = MotionReserve(hand, finger, at_home, estimate.p_WO, axis_W,
+                                         gait.limit_margin, 3.0, gait.reach);
     if (reserve < gait.step_rad) continue;
+    ++tested;
     // The object turns nearly as far as the finger follows.
     const Vector3d r = at_home.p_WF - estimate.p_WO;
     FingerPosture at_end = at_home;
@@ -134,8 +136,8 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     for (std::size_t k = 0; k < joints.size(); ++k)
       q[joints[k]] = at_end.q[static_cast<Eigen::Index>(k)];
     estimate = TouchingEstimate(hand, q);
-    const double rest =
-        MotionReserve(hand, finger, at_end, estimate.p_WO, axis_W, gait.limit_margin, 3.0);
+    const double rest = MotionReserve(hand, finger, at_end, estimate.p_WO, axis_W,
+                                      gait.limit_margin, 3.0, gait.reach);
     ASSERT_LT(rest, 0.19);
     ASSERT_GT(rest, 0.06);  // a whole step of what the gait counts on
     // Only where it stands the object has been felt.
@@ -160,6 +162,7 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     gait.step_rad = step;
     estimate = TouchingEstimate(hand, GraspPosture(hand));
   }
+  EXPECT_GE(tested, 2);
 }
 
 TEST_F(LandingPlanTest, TellsThatAnotherFingerStandsInTheWay) {

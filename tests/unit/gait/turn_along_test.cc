@@ -36,8 +36,8 @@ struct TurnAlongTest : HeldTick {
     double least = 10;
     for (int i : fingers) {
       const FingerPosture now = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
-      least = std::min(least,
-                       SureReserve(hand, i, now, estimate.p_WO, kAxis_W, gait.limit_margin, 10.0));
+      least = std::min(least, SureReserve(hand, i, now, estimate.p_WO, kAxis_W, gait.limit_margin,
+                                          10.0, gait.reach));
     }
     return least;
   }

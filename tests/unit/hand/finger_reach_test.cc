@@ -79,7 +79,7 @@ HandModel FingerOnTheAxis(double lower, double upper) {
 
 double ReserveAt(const HandModel& hand, double q, const Vector3d& axis_W, double most) {
   const FingerPosture from = PostureAt(hand, 0, FingerVector::Constant(1, q));
-  return MotionReserve(hand, 0, from, Vector3d::Zero(), axis_W, 0.03, most);
+  return MotionReserve(hand, 0, from, Vector3d::Zero(), axis_W, 0.03, most, {});
 }
 
 // The joint turns by what the object turns: the reserve is the way to the limit, whose derivative
