@@ -158,7 +158,6 @@ double DrawLegend(Canvas* canvas, Point2 at, const std::string& heading,
 namespace {
 
 constexpr double kLine = 22, kGap = 16, kSymbol = 50;  // of legends below the axes
-constexpr double kXAxis = 68;                          // room for values and label of the x axis
 
 /// Legends in lines that wrap; returns the y below them. `canvas` only measures where it is null.
 double FlowLegends(const Canvas& measure, Canvas* canvas, Point2 at, double width,
@@ -195,18 +194,19 @@ double FlowLegends(const Canvas& measure, Canvas* canvas, Point2 at, double widt
 
 }  // namespace
 
-Layout::Layout(const Canvas& canvas, std::span<const LegendGroup> groups) {
+Layout::Layout(const Canvas& canvas, std::span<const LegendGroup> groups, double axis_room)
+    : below(axis_room) {
   left = canvas.narrow() ? 94 : 150;
   width = canvas.width() - left - (canvas.narrow() ? 14 : 290);
   bottom = canvas.height() - 90;
   if (canvas.narrow())
-    bottom = canvas.height() - kXAxis - 6 -
+    bottom = canvas.height() - below - 6 -
              FlowLegends(canvas, nullptr, {14, 0}, canvas.width() - 28, groups);
 }
 
 void Layout::DrawLegends(Canvas* canvas, std::span<const LegendGroup> groups) const {
   if (canvas->narrow()) {
-    FlowLegends(*canvas, canvas, {14, bottom + kXAxis}, canvas->width() - 28, groups);
+    FlowLegends(*canvas, canvas, {14, bottom + below}, canvas->width() - 28, groups);
     return;
   }
   double y = 0;

@@ -81,8 +81,10 @@ struct LegendGroup {
 /// Where axes go on a sheet, and where their legends: in a column at the right, or in lines below
 /// where the sheet is narrow. Make it before the axes: a narrow sheet needs to know how many lines.
 struct Layout {
-  double left, width, bottom;  ///< of the axes; their x axis needs the room below `bottom`
-  Layout(const Canvas& canvas, std::span<const LegendGroup> groups);
+  static constexpr double kXAxis = 68;  ///< room for values and label of an x axis
+  double left, width, bottom;           ///< of the axes; their x axis needs the room below `bottom`
+  double below;                         ///< that room, on a narrow sheet
+  Layout(const Canvas& canvas, std::span<const LegendGroup> groups, double axis_room = kXAxis);
   void DrawLegends(Canvas* canvas, std::span<const LegendGroup> groups) const;
 };
 

@@ -30,12 +30,16 @@ std::string LowerSuffix(const std::string& path) {
   return suffix;
 }
 
-/// Checked: what a canvas of this size and path is drawn on.
-SheetSize SizeOf(const CanvasSize& size, const std::string& path) {
-  const std::string suffix = LowerSuffix(path);
+std::string CheckedSuffix(const std::string& path) {
+  std::string suffix = LowerSuffix(path);
   if (std::find(kSuffixes.begin(), kSuffixes.end(), suffix) == kSuffixes.end())
     throw std::runtime_error(fmt::format(
         "{}: unsupported suffix '{}' (allowed: .png, .jpg, .jpeg, .pdf, .svg)", path, suffix));
+  return suffix;
+}
+
+/// Checked: what a canvas of this size is drawn on.
+SheetSize SizeOf(const CanvasSize& size, const std::string& suffix, const std::string& path) {
   if (size.width_px < 400 || size.width_px > 8000 || size.height_px < 300 || size.height_px > 8000)
     throw std::runtime_error(
         fmt::format("{}: picture size {}x{} px (allowed: 400x300 .. 8000x8000)", path,
@@ -76,10 +80,16 @@ CanvasSize SizeOf(const PlotOptions& options, double narrow_height) {
 }
 
 Canvas::Canvas(const CanvasSize& size, std::string path)
+    : Canvas(size, SizeOf(size, CheckedSuffix(path), path), path) {}
+
+Canvas::Canvas(const CanvasSize& size)
+    : Canvas(size, SizeOf(size, kPixels, "picture"), "picture") {}
+
+Canvas::Canvas(const CanvasSize& size, const SheetSize& sheet_size, std::string path)
     : path_(std::move(path)),
       with_title_(size.with_title),
       narrow_(size.narrow),
-      size_(SizeOf(size, path_)),
+      size_(sheet_size),
       fonts_(path_),
       sheet_(MakeSheet(size_, fonts_)) {}
 

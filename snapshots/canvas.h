@@ -40,12 +40,15 @@ class Canvas {
  public:
   /// White. Throws std::runtime_error with `path` for a bad size, suffix or a missing font.
   Canvas(const CanvasSize& size, std::string path);
+  /// In memory only: Bytes() are the pixels. Throws the same, with "picture" for the path.
+  explicit Canvas(const CanvasSize& size);
 
   double width() const { return size_.width_px / size_.unit; }
   double height() const { return size_.height_px / size_.unit; }
   /// Pixels of the finished picture per logical unit.
   double unit() const { return size_.unit; }
 
+  const std::string& path() const { return path_; }
   bool with_title() const { return with_title_; }
   /// Legends go below the axes.
   bool narrow() const { return narrow_; }
@@ -92,6 +95,8 @@ class Canvas {
   };
   static std::vector<Piece> Pieces(const std::string& utf8);
   double PieceWidth(const Piece& piece, double size, bool bold) const;
+
+  Canvas(const CanvasSize& size, const SheetSize& sheet_size, std::string path);
 
   std::string path_;
   bool with_title_, narrow_;

@@ -81,17 +81,13 @@ std::vector<LegendGroup> Legends(std::span<const Frame> frames, std::span<const 
       {"load margin", {LineEntry("all in contact", {kInk, 2.5})}}};
 }
 
-}  // namespace
-
-void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
-                 const HandModel& hand, const PlotOptions& options, const std::string& path) {
-  const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(SizeOf(options, 800), path);
+void Draw(Canvas* canvas, std::span<const Frame> frames, std::span<const Event> events,
+          const HandModel& hand, const PlotOptions& options) {
   const std::vector<double> t = Times(frames);
   const double strips = DrawTitle(
-      &canvas, options.title.empty() ? "Manipulability and grasp stability" : options.title,
+      canvas, options.title.empty() ? "Manipulability and grasp stability" : options.title,
       Facts(frames, hand, options));
-  const Axis time = TimeAxis(frames, canvas);
+  const Axis time = TimeAxis(frames, *canvas);
 
   Range phi_range;
   phi_range.Add(0);
@@ -125,7 +121,7 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
     return result;
   };
   std::vector<LegendGroup> legends = Legends(frames, events, hand);
-  const Layout layout(canvas, legends);
+  const Layout layout(*canvas, legends);
   const double left = layout.left, width = layout.width;
   const double first = strips + 100, room = layout.bottom - first - 2 * 26;
   const Panel upper{{left, first, width, 0.47 * room},
@@ -141,42 +137,62 @@ void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
 
   const auto states =
       Bands(frames, [](const Frame& frame) { return static_cast<int>(frame.state); });
-  DrawStrip(&canvas, upper, strips, 26, "state", states, [](int value) {
+  DrawStrip(canvas, upper, strips, 26, "state", states, [](int value) {
     const auto state = static_cast<SessionState>(value);
     return BandLook{std::string(Name(state)), StateColour(state)};
   });
-  DrawStrip(&canvas, upper, strips + 32, 26, "objective", Bands(frames, ActiveObjective),
+  DrawStrip(canvas, upper, strips + 32, 26, "objective", Bands(frames, ActiveObjective),
             [&](int value) { return LookOfObjective(hand, value); });
   for (const Panel& panel : panels) {
-    DrawStateBackground(&canvas, panel, states);
-    DrawGrid(&canvas, panel, &panel == &panels.back());
+    DrawStateBackground(canvas, panel, states);
+    DrawGrid(canvas, panel, &panel == &panels.back());
   }
-  DrawEvents(&canvas, panels, strips + 78, frames, events);
-  canvas.Text({left - 12, strips + 78}, "events",
-              {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
+  DrawEvents(canvas, panels, strips + 78, frames, events);
+  canvas->Text({left - 12, strips + 78}, "events",
+               {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
   for (int f = 0; f < hand.num_fingers(); ++f) {
     const FingerLook look = LookOfFinger(f);
-    DrawCurve(&canvas, upper, t, phi_sensed[f], {Tint(look.colour, 0.62), 1.5});
+    DrawCurve(canvas, upper, t, phi_sensed[f], {Tint(look.colour, 0.62), 1.5});
   }
   for (int f = 0; f < hand.num_fingers(); ++f) {
     const FingerLook look = LookOfFinger(f);
-    DrawCurve(&canvas, upper, t, phi_true[f], {Tint(look.colour, 0.15), 1.5, look.dash});
+    DrawCurve(canvas, upper, t, phi_true[f], {Tint(look.colour, 0.15), 1.5, look.dash});
     std::vector<double> bold = phi_true[f];
     for (std::size_t i = 0; i < frames.size(); ++i)
       if (ExploringFinger(frames[i]) != f) bold[i] = kNoValue;
-    DrawCurve(&canvas, upper, t, bold, {look.colour, 4, look.dash});
+    DrawCurve(canvas, upper, t, bold, {look.colour, 4, look.dash});
   }
-  DrawCurve(&canvas, middle, t, stability, {kInk, 2.5});
-  DrawCurve(&canvas, middle, t, threshold, {kGrey, 2, {12, 7}});
-  DrawCurve(&canvas, lower, t, margin, {kInk, 2.5});
-  for (const Panel& panel : panels) DrawFrame(&canvas, panel);
+  DrawCurve(canvas, middle, t, stability, {kInk, 2.5});
+  DrawCurve(canvas, middle, t, threshold, {kGrey, 2, {12, 7}});
+  DrawCurve(canvas, lower, t, margin, {kInk, 2.5});
+  for (const Panel& panel : panels) DrawFrame(canvas, panel);
 
   legends[kStabilityGroup].y = middle.area.y;
   legends[kLoadGroup].y = lower.area.y;
   legends[0].y = upper.area.y;
-  layout.DrawLegends(&canvas, legends);
+  layout.DrawLegends(canvas, legends);
+}
+
+constexpr double kNarrowHeight = 800;
+
+}  // namespace
+
+void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
+                 const HandModel& hand, const PlotOptions& options, const std::string& path) {
+  const auto frames = Newest(history, options.last_s, path);
+  Canvas canvas(SizeOf(options, kNarrowHeight), path);
+  Draw(&canvas, frames, events, hand, options);
   canvas.Save();
+}
+
+Pixels QualityPixels(std::span<const Frame> history, std::span<const Event> events,
+                     const HandModel& hand, const PlotOptions& options) {
+  const auto frames = Newest(history, options.last_s, "picture");
+  Canvas canvas(SizeOf(options, kNarrowHeight));
+  Draw(&canvas, frames, events, hand, options);
+  const std::string bytes = canvas.Bytes();
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace regrasp

@@ -15,6 +15,8 @@ namespace regrasp {
 namespace {
 
 constexpr Colour kPalm{214, 214, 218}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
+constexpr double kTop = 104, kGap = 20;  // of the views on a wide sheet
+constexpr double kNarrowHeight = 1050, kNarrowMargin = 14, kNarrowGap = 10;
 constexpr double kScaleBar = 0.02;   // [m]
 constexpr double kOutOfView = 0.15;  // an object this far from every fingertip is left out [m]
 
@@ -235,20 +237,101 @@ class ViewPainter {
   cv::Mat_<int> drawn_;  ///< sums over the cells above and to the left that show a body, 255 each
 };
 
-}  // namespace
+/// Forces on the object, for scales and legends.
+struct Forces {
+  std::vector<double> of_finger;  ///< sum of magnitudes [N]
+  double other = 0, largest = 0;  ///< [N]
+  Vector3d sum_W = Vector3d::Zero();
+  // The largest force is drawn 35 mm long.
+  double metres_per_newton() const { return largest > 1e-6 ? 0.035 / largest : 0; }
+  double scale() const { return largest > 1e-6 ? NiceBelow(largest) : 0; }  ///< [N]
+};
 
-void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
-               const PlotOptions& options, const std::string& path) {
+Forces ForcesOf(const Frame& frame, const HandModel& hand) {
+  Forces forces;
+  forces.of_finger.resize(hand.fingers.size(), 0);
+  for (const Frame::Contact& contact : frame.contacts) {
+    const double force = contact.force_W.norm();
+    forces.largest = std::max(forces.largest, force);
+    forces.sum_W += contact.force_W;
+    (contact.finger >= 0 && contact.finger < hand.num_fingers()
+         ? forces.of_finger[static_cast<std::size_t>(contact.finger)]
+         : forces.other) += force;
+  }
+  return forces;
+}
+
+std::vector<LegendGroup> Legends(const Frame& frame, const HandModel& hand, const Forces& forces,
+                                 bool in_view) {
+  std::vector<LegendEntry> fingers;
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    fingers.push_back(
+        MarkEntry(fmt::format("{}  {:.2f} N", hand.fingers[f].name, forces.of_finger[f]),
+                  Marker::kDisc, LookOfFinger(f).colour));
+  if (forces.other > 0)
+    fingers.push_back(
+        MarkEntry(fmt::format("other links  {:.2f} N", forces.other), Marker::kDisc, kInk));
+  const std::vector<LegendEntry> arrow = {
+      LegendEntry{"force on the object", [](Canvas* c, Point2 m) {
+                    c->Arrow(m - Point2(20, 0), m + Point2(20, 0), {kInk, 3.6});
+                  }}};
+  const double weight = frame.mass_kg * frame.gravity_W.norm();
+  const double carried = weight > 0 ? -forces.sum_W.dot(frame.gravity_W.normalized()) : 0;
+  std::vector<LegendEntry> balance = {{fmt::format("weight  {:.3f} N", weight), {}}};
+  if (weight > 0)
+    balance.push_back(
+        {fmt::format("carried now  {:.3f} N", std::abs(carried) < 5e-4 ? 0 : carried), {}});
+  balance.push_back({fmt::format("state  {}", Name(frame.state)), {}});
+  if (frame.stand_in) balance.push_back({"stand-in holds the object", {}});
+  if (!in_view) balance.push_back({"object out of view", {}});
+  return {{"contact force, true", fingers, kTop + 4}, {"", arrow}, {"balance", balance}};
+}
+
+struct Side {
+  Vector3d to_viewer;
+  const char* name;
+};
+const std::array<Side, 2> kSides = {Side{{0.22, -1, 0.16}, "from the palm's side"},
+                                    Side{{1, -0.32, 0.12}, "from the thumb's side"}};
+
+/// Where the two views go: side by side, or one below the other on a narrow sheet.
+std::array<Box, 2> Boxes(const Canvas& canvas, const Layout& layout, double top) {
+  if (canvas.narrow()) {
+    const double height = (layout.bottom - top - kNarrowGap) / 2;
+    const double width = canvas.width() - 2 * kNarrowMargin;
+    return {Box(kNarrowMargin, top, width, height),
+            Box(kNarrowMargin, top + height + kNarrowGap, width, height)};
+  }
+  const double width = (layout.left + layout.width - 2 * kGap) / 2;
+  const double height = canvas.height() - kTop - 24;
+  return {Box(kGap, kTop, width, height), Box(2 * kGap + width, kTop, width, height)};
+}
+
+/// Up on the sheet is up in the world where the direction of view allows it, else towards the
+/// fingers.
+Vector3d UpFor(const Vector3d& to_viewer, const Vector3d& gravity_W) {
+  const Vector3d up =
+      gravity_W.norm() > 1e-6 ? Vector3d(-gravity_W.normalized()) : Vector3d(Vector3d::UnitZ());
+  return TangentPart(up, to_viewer.normalized()).norm() > 0.45 ? up : Vector3d(Vector3d::UnitZ());
+}
+
+void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const ObjectModel& object,
+               const PlotOptions& options) {
   if (frame.q.size() != hand.num_joints())
     throw std::runtime_error(
         fmt::format("{}: nothing to draw: the frame has {} joint angles, hand {} has {} joints",
-                    path, frame.q.size(), hand.name, hand.num_joints()));
+                    canvas->path(), frame.q.size(), hand.name, hand.num_joints()));
   if (!frame.q.allFinite())
-    throw std::runtime_error(path + ": nothing to draw: the frame's joint angles are not finite");
-  Canvas canvas(SizeOf(options), path);
+    throw std::runtime_error(canvas->path() +
+                             ": nothing to draw: the frame's joint angles are not finite");
   const bool in_view = ObjectInView(frame, object);
-  DrawTitle(&canvas, options.title.empty() ? "Hand, object and contact forces" : options.title,
-            Facts({&frame, 1}, hand, object.name));
+  const double top =
+      DrawTitle(canvas, options.title.empty() ? "Hand, object and contact forces" : options.title,
+                Facts({&frame, 1}, hand, object.name));
+  const Forces forces = ForcesOf(frame, hand);
+  const std::vector<LegendGroup> legends = Legends(frame, hand, forces, in_view);
+  const Layout layout(*canvas, legends, 0);
+  layout.DrawLegends(canvas, legends);
 
   const std::vector<Body> bodies = Bodies(frame, hand, object);
   Vector3d middle = frame.p_WO;  // labels point away from it, scales hold at its depth
@@ -257,89 +340,45 @@ void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& obj
     for (const FingerFrame& finger : frame.fingers)
       middle += finger.true_tip_W / static_cast<double>(frame.fingers.size());
   }
-  double largest = 0;
-  Vector3d sum = Vector3d::Zero();
-  for (const Frame::Contact& contact : frame.contacts) {
-    largest = std::max(largest, contact.force_W.norm());
-    sum += contact.force_W;
-  }
-  // The largest force is drawn 35 mm long.
-  const double metres_per_newton = largest > 1e-6 ? 0.035 / largest : 0;
-  const double newton = largest > 1e-6 ? NiceBelow(largest) : 0;
-
-  // Up on the sheet is up in the world where the direction of view allows it, else towards the
-  // fingers.
-  const auto up_for = [&](const Vector3d& to_viewer) {
-    const Vector3d up = frame.gravity_W.norm() > 1e-6 ? Vector3d(-frame.gravity_W.normalized())
-                                                      : Vector3d(Vector3d::UnitZ());
-    return TangentPart(up, to_viewer.normalized()).norm() > 0.45 ? up : Vector3d(Vector3d::UnitZ());
-  };
-  const double side_width = 250, top = 104, gap = 20;
-  const double width = (canvas.width() - side_width - 3 * gap) / 2,
-               height = canvas.height() - top - 24;
-  struct Side {
-    Vector3d to_viewer;
-    const char* name;
-  };
-  const std::array<Side, 2> sides = {Side{{0.22, -1, 0.16}, "from the palm's side"},
-                                     Side{{1, -0.32, 0.12}, "from the thumb's side"}};
-  for (int i = 0; i < 2; ++i) {
-    const Box box(gap + i * (width + gap), top, width, height);
-    ViewPainter view(&canvas, box, bodies, sides[i].to_viewer, up_for(sides[i].to_viewer));
-    canvas.Clip(box);
+  const std::array<Box, 2> boxes = Boxes(*canvas, layout, top);
+  for (std::size_t i = 0; i < kSides.size(); ++i) {
+    const Box& box = boxes[i];
+    ViewPainter view(canvas, box, bodies, kSides[i].to_viewer,
+                     UpFor(kSides[i].to_viewer, frame.gravity_W));
+    canvas->Clip(box);
     for (const Frame::Contact& contact : frame.contacts)
-      view.Force(contact.p_WC, contact.force_W, metres_per_newton,
+      view.Force(contact.p_WC, contact.force_W, forces.metres_per_newton(),
                  contact.finger >= 0 ? LookOfFinger(contact.finger).colour : kInk);
     for (int f = 0; f < std::min<int>(hand.num_fingers(), static_cast<int>(frame.fingers.size()));
          ++f)
       view.Label(frame.fingers[f].true_tip_W, view.At(middle), hand.fingers[f].name,
                  Shade(LookOfFinger(f).colour, 0.25));
     view.Directions(frame.gravity_W);
-    view.Scales(middle, newton, metres_per_newton);
-    canvas.Unclip();
+    view.Scales(middle, forces.scale(), forces.metres_per_newton());
+    canvas->Unclip();
     const std::vector<Point2> corners = {
         box.tl(), {box.br().x, box.y}, box.br(), {box.x, box.br().y}, box.tl()};
-    canvas.Polyline(corners, {kLightGrey, 1});
-    canvas.Text({box.x + width / 2, box.y + 20}, sides[i].name,
-                {.size = 18, .colour = kGrey, .align_x = AlignX::kCentre, .halo = 2});
+    canvas->Polyline(corners, {kLightGrey, 1});
+    canvas->Text({box.x + box.width / 2, box.y + 20}, kSides[i].name,
+                 {.size = 18, .colour = kGrey, .align_x = AlignX::kCentre, .halo = 2});
   }
+}
 
-  const double side = canvas.width() - side_width + 4;
-  std::vector<LegendEntry> entries;
-  std::vector<double> force(hand.fingers.size(), 0);
-  double other = 0;
-  for (const Frame::Contact& contact : frame.contacts) {
-    if (contact.finger >= 0 && contact.finger < hand.num_fingers())
-      force[contact.finger] += contact.force_W.norm();
-    else
-      other += contact.force_W.norm();
-  }
-  for (int f = 0; f < hand.num_fingers(); ++f)
-    entries.push_back(MarkEntry(fmt::format("{}  {:.2f} N", hand.fingers[f].name, force[f]),
-                                Marker::kDisc, LookOfFinger(f).colour));
-  if (other > 0)
-    entries.push_back(MarkEntry(fmt::format("other links  {:.2f} N", other), Marker::kDisc, kInk));
-  double y = DrawLegend(&canvas, {side, top + 4}, "contact force, true", entries) + 16;
-  const std::array<LegendEntry, 1> arrow = {
-      LegendEntry{"force on the object", [](Canvas* c, Point2 m) {
-                    c->Arrow(m - Point2(20, 0), m + Point2(20, 0), {kInk, 3.6});
-                  }}};
-  y = DrawLegend(&canvas, {side, y}, "", arrow) + 16;
-  const double weight = frame.mass_kg * frame.gravity_W.norm();
-  const double carried = weight > 0 ? -sum.dot(frame.gravity_W.normalized()) : 0;
-  canvas.Text({side, y + 10}, "balance", {.size = 18, .bold = true});
-  std::vector<std::string> lines = {fmt::format("weight  {:.3f} N", weight)};
-  if (weight > 0)
-    lines.push_back(fmt::format("carried now  {:.3f} N", std::abs(carried) < 5e-4 ? 0 : carried));
-  lines.push_back(fmt::format("state  {}", Name(frame.state)));
-  if (frame.stand_in) lines.push_back("stand-in holds the object");
-  if (!in_view) lines.push_back("object out of view");
-  y += 40;
-  for (const std::string& line : lines) {
-    canvas.Text({side, y}, line, {.size = 18});
-    y += 26;
-  }
+}  // namespace
+
+void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
+               const PlotOptions& options, const std::string& path) {
+  Canvas canvas(SizeOf(options, kNarrowHeight), path);
+  DrawScene(&canvas, frame, hand, object, options);
   canvas.Save();
+}
+
+Pixels ScenePixels(const Frame& frame, const HandModel& hand, const ObjectModel& object,
+                   const PlotOptions& options) {
+  Canvas canvas(SizeOf(options, kNarrowHeight));
+  DrawScene(&canvas, frame, hand, object, options);
+  const std::string bytes = canvas.Bytes();
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace regrasp

@@ -215,6 +215,8 @@ void RasterSheet::Paste(const cv::Mat& bgr, const Box& box) {
 std::string RasterSheet::Bytes() {
   cv::Mat small;
   cv::resize(image_, small, {size_.width_px, size_.height_px}, 0, 0, cv::INTER_AREA);
+  if (size_.suffix == kPixels)
+    return {reinterpret_cast<const char*>(small.data), small.total() * small.elemSize()};
   std::vector<std::uint8_t> bytes;
   const std::vector<int> settings = {cv::IMWRITE_PNG_COMPRESSION, 3, cv::IMWRITE_JPEG_QUALITY, 94};
   if (!cv::imencode(size_.suffix, small, bytes, settings))

@@ -9,10 +9,12 @@
 namespace regrasp {
 namespace {
 
+using Vector3f = Eigen::Vector3f;
+
 constexpr double kViewDistance = 0.7;   // of the camera from the middle of the bodies [m]
 constexpr double kBehind = 0.03;        // the white ground counts as this far behind the scene [m]
-constexpr double kDeepestShadow = 0.5;  // part of the light that the deepest shadow takes
-constexpr double kShadowDepth = 0.02;   // depth behind the surroundings that takes half of that [m]
+constexpr float kDeepestShadow = 0.5F;  // part of the light that the deepest shadow takes
+constexpr float kShadowDepth = 0.02F;   // depth behind the surroundings that takes half of that [m]
 constexpr double kContourDepth = 0.004;  // a step in depth that earns a contour [m]
 
 /// Depth, body and surface normal (camera frame) per pixel.
@@ -53,56 +55,79 @@ double HitSphere(const Vector3d& d, const Vector3d& c, double r) {
 
 void DrawCapsule(const Body& body, int index, const Camera& camera, Buffers* out) {
   const Isometry3d X_CB = camera.X_CW * body.X_WB;
-  const Vector3d a = X_CB * body.a_B, b = X_CB * body.b_B, axis = b - a;
-  const double length2 = axis.squaredNorm(), r = body.radius;
+  const Vector3d a = X_CB * body.a_B, b = X_CB * body.b_B;
+  const double length = (b - a).norm(), r = body.radius;
+  const bool round = length < 1e-6;  // a sphere
+  const Vector3d e = round ? Vector3d(Vector3d::Zero()) : Vector3d((b - a) / length);
+  const double ae = a.dot(e), C = a.squaredNorm() - r * r - ae * ae;
   const cv::Size size = out->depth.size();
   const cv::Rect box = PixelBounds(camera, a, r, size) | PixelBounds(camera, b, r, size);
-  for (int y = box.y; y < box.br().y; ++y)
+  for (int y = box.y; y < box.br().y; ++y) {
+    const double dy = (y - camera.centre_y_px) / camera.focal_px;
+    const double dd_row = dy * dy + 1, de_row = dy * e.y() + e.z(), da_row = dy * a.y() + a.z();
     for (int x = box.x; x < box.br().x; ++x) {
-      const Vector3d d((x - camera.centre_x_px) / camera.focal_px,
-                       (y - camera.centre_y_px) / camera.focal_px, 1);
-      double t = -1, along = 0;
-      if (length2 > 1e-12) {
-        // The infinite cylinder: |(t d - a) x axis|² = r² |axis|².
-        const Vector3d u = d - axis * (d.dot(axis) / length2),
-                       v = -a + axis * (a.dot(axis) / length2);
-        const double A = u.squaredNorm(), B = u.dot(v), h = B * B - A * (v.squaredNorm() - r * r);
-        if (h < 0) continue;
-        t = (-B - std::sqrt(h)) / A;
-        along = (d * t - a).dot(axis) / length2;
-        if (along < 0 || along > 1) {
-          const double ta = HitSphere(d, a, r), tb = HitSphere(d, b, r);
-          t = ta > 0 && (tb <= 0 || ta < tb) ? ta : tb;
-          along = t == ta ? 0 : 1;
-        }
-      } else {
-        t = HitSphere(d, a, r);
+      // The ray t d, d = (dx, dy, 1), meets the infinite cylinder, |(t d - a) x e|² = r², or the
+      // sphere, where A t² - 2 B t + C = 0.
+      const double dx = (x - camera.centre_x_px) / camera.focal_px;
+      const double de = dx * e.x() + de_row;
+      const double A = dx * dx + dd_row - de * de, B = dx * a.x() + da_row - de * ae;
+      const double h = B * B - A * C;
+      if (h < 0) continue;
+      const Vector3d d(dx, dy, 1);
+      double t = (B - std::sqrt(h)) / A, along = t * de - ae;
+      if (!round && (along < 0 || along > length)) {
+        const double ta = HitSphere(d, a, r), tb = HitSphere(d, b, r);
+        t = ta > 0 && (tb <= 0 || ta < tb) ? ta : tb;
+        along = t == ta ? 0 : length;
       }
-      if (t > 0) out->Put(x, y, t, index, (d * t - a - axis * along) / r);
+      if (t > 0) out->Put(x, y, t, index, (d * t - a - e * along) / r);
     }
+  }
+}
+
+/// The pixels that points in front of the camera span.
+cv::Rect PixelBounds(const Camera& camera, std::span<const Vector3d> p_W, cv::Size size) {
+  cv::Rect_<double> all(camera.Project(p_W.front()), cv::Size2d());
+  for (const Vector3d& p : p_W) {
+    const cv::Point2d q = camera.Project(p);
+    all |= cv::Rect_<double>(q - cv::Point2d(1, 1), cv::Size2d(2, 2));
+  }
+  return cv::Rect(cv::Point(cvFloor(all.x), cvFloor(all.y)),
+                  cv::Point(cvCeil(all.br().x), cvCeil(all.br().y))) &
+         cv::Rect({0, 0}, size);
+}
+
+std::array<Vector3d, 8> CornersOf(const Body& box) {
+  std::array<Vector3d, 8> corners;
+  for (unsigned i = 0; i < 8; ++i)
+    corners[i] = box.X_WB * Vector3d(box.half_extents.x() * (i & 1 ? 1 : -1),
+                                     box.half_extents.y() * (i & 2 ? 1 : -1),
+                                     box.half_extents.z() * (i & 4 ? 1 : -1));
+  return corners;
 }
 
 void DrawBox(const Body& body, int index, const Camera& camera, Buffers* out) {
   const Isometry3d X_CB = camera.X_CW * body.X_WB, X_BC = X_CB.inverse();
-  const auto [centre_W, radius] = body.BoundingSphere();
   const Vector3d eye = X_BC.translation();
-  const cv::Rect box = PixelBounds(camera, camera.X_CW * centre_W, radius, out->depth.size());
-  for (int y = box.y; y < box.br().y; ++y)
+  const cv::Rect box = PixelBounds(camera, CornersOf(body), out->depth.size());
+  for (int y = box.y; y < box.br().y; ++y) {
+    const double dy = (y - camera.centre_y_px) / camera.focal_px;
+    const Vector3d d_row = X_BC.linear() * Vector3d(0, dy, 1);
     for (int x = box.x; x < box.br().x; ++x) {
-      const Vector3d d = X_BC.linear() * Vector3d((x - camera.centre_x_px) / camera.focal_px,
-                                                  (y - camera.centre_y_px) / camera.focal_px, 1);
+      const Vector3d d =
+          d_row + X_BC.linear().col(0) * ((x - camera.centre_x_px) / camera.focal_px);
       double enter = -1e30, leave = 1e30;
       int side = 0;
       for (int k = 0; k < 3; ++k) {
         const double inverse = 1 / (std::abs(d[k]) < 1e-12 ? std::copysign(1e-12, d[k]) : d[k]);
-        const double t1 = (-body.half_extents[k] - eye[k]) * inverse;
-        const double t2 = (body.half_extents[k] - eye[k]) * inverse;
-        if (std::min(t1, t2) > enter) enter = std::min(t1, t2), side = k;
-        leave = std::min(leave, std::max(t1, t2));
+        const double middle = -eye[k] * inverse, reach = std::abs(body.half_extents[k] * inverse);
+        if (middle - reach > enter) enter = middle - reach, side = k;
+        leave = std::min(leave, middle + reach);
       }
       if (enter <= 0 || enter > leave) continue;
       out->Put(x, y, enter, index, X_CB.linear().col(side) * (d[side] > 0 ? -1 : 1));
     }
+  }
 }
 
 void DrawMesh(const Body& body, int index, const Camera& camera, Buffers* out) {
@@ -162,8 +187,8 @@ cv::Mat_<float> Surroundings(const cv::Mat_<float>& depth, double far, double ra
   return blurred;
 }
 
-double Power28(double v) {
-  const double v4 = (v * v) * (v * v), v8 = v4 * v4;
+float Power28(float v) {
+  const float v4 = (v * v) * (v * v), v8 = v4 * v4;
   return v4 * v8 * v8 * v8;
 }
 
@@ -208,11 +233,7 @@ Camera FitCamera(std::span<const Body> bodies, const Vector3d& to_viewer_W, cons
       include(body.X_WB * body.a_B, body.radius);
       include(body.X_WB * body.b_B, body.radius);
     } else if (body.kind == Body::Kind::kBox) {
-      for (int i = 0; i < 8; ++i)
-        include(body.X_WB * Vector3d(body.half_extents.x() * (i & 1 ? 1 : -1),
-                                     body.half_extents.y() * (i & 2 ? 1 : -1),
-                                     body.half_extents.z() * (i & 4 ? 1 : -1)),
-                0);
+      for (const Vector3d& corner : CornersOf(body)) include(corner, 0);
     } else {
       const auto [centre, radius] = body.BoundingSphere();
       include(centre, radius);
@@ -249,38 +270,41 @@ cv::Mat Render(std::span<const Body> bodies, const Camera& camera, cv::Size size
   const double unit = camera.focal_px / kViewDistance * 1e-3;  // pixels per mm, about
   const cv::Mat_<float> around = Surroundings(buffers.depth, far + kBehind, 5 * unit);
 
-  const Vector3d key =
-      Vector3d(-0.45, -0.75, -0.75).normalized();  // towards the light, camera frame
-  const Vector3d half_way = (key - Vector3d::UnitZ()).normalized();
+  const Vector3f key =
+      Vector3f(-0.45F, -0.75F, -0.75F).normalized();  // towards the light, camera frame
+  const Vector3f half_way = (key - Vector3f::UnitZ()).normalized();
   std::vector<Isometry3d> X_BC;
   for (const Body& body : bodies) X_BC.push_back((camera.X_CW * body.X_WB).inverse());
   cv::Mat picture(size, CV_8UC3, cv::Scalar::all(255));
-  for (int y = 0; y < size.height; ++y)
+  for (int y = 0; y < size.height; ++y) {
+    const std::int16_t* shown = buffers.body[y];
+    const float *depth = buffers.depth[y], *depth_around = around[y];
+    const cv::Vec3f* normal = buffers.normal[y];
+    auto* pixel = picture.ptr<cv::Vec3b>(y);
     for (int x = 0; x < size.width; ++x) {
-      const int index = buffers.body(y, x);
-      if (index < 0) continue;
-      const Body& body = bodies[static_cast<std::size_t>(index)];
-      const cv::Vec3f& nf = buffers.normal(y, x);
-      const Vector3d n(nf[0], nf[1], nf[2]);
+      if (shown[x] < 0) continue;
+      const auto index = static_cast<std::size_t>(shown[x]);
+      const Body& body = bodies[index];
+      const Vector3f n(normal[x][0], normal[x][1], normal[x][2]);
       Colour base = body.colour;
       if (!(body.second_colour == body.colour)) {
-        const double z = buffers.depth(y, x);
-        const Vector3d p_B = X_BC[static_cast<std::size_t>(index)] *
-                             Vector3d((x - camera.centre_x_px) / camera.focal_px * z,
-                                      (y - camera.centre_y_px) / camera.focal_px * z, z);
+        const double z = depth[x];
+        const Vector3d p_B =
+            X_BC[index] * Vector3d((x - camera.centre_x_px) / camera.focal_px * z,
+                                   (y - camera.centre_y_px) / camera.focal_px * z, z);
         if (p_B.x() * p_B.y() * p_B.z() > 0) base = body.second_colour;
       }
-      const double diffuse = std::max(0.0, n.dot(key)), sky = 0.5 - 0.5 * n.y();
-      const double behind =
-          std::max(0.0, static_cast<double>(buffers.depth(y, x) - around(y, x)) - 0.001);
-      const double shadow = 1 - kDeepestShadow * behind / (behind + kShadowDepth);
-      const double light = (0.52 + 0.16 * sky + 0.44 * diffuse) * shadow;
-      const double shine = 34 * shadow * Power28(std::max(0.0, n.dot(half_way)));
+      const float diffuse = std::max(0.0F, n.dot(key)), sky = 0.5F - 0.5F * n.y();
+      const float behind = std::max(0.0F, depth[x] - depth_around[x] - 0.001F);
+      const float shadow = 1 - kDeepestShadow * behind / (behind + kShadowDepth);
+      const float light = (0.52F + 0.16F * sky + 0.44F * diffuse) * shadow;
+      const float shine = 34 * shadow * Power28(std::max(0.0F, n.dot(half_way)));
       const auto tone = [&](std::uint8_t c) {
-        return static_cast<std::uint8_t>(std::clamp(c * light + shine, 0.0, 255.0));
+        return static_cast<std::uint8_t>(std::min(c * light + shine, 255.0F));
       };
-      picture.at<cv::Vec3b>(y, x) = {tone(base.b), tone(base.g), tone(base.r)};
+      pixel[x] = {tone(base.b), tone(base.g), tone(base.r)};
     }
+  }
 
   std::vector<int> ids;
   for (const Body& body : bodies) ids.push_back(body.id);
@@ -288,24 +312,25 @@ cv::Mat Render(std::span<const Body> bodies, const Camera& camera, cv::Size size
   for (int y = 0; y + 1 < size.height; ++y) {
     const float *z = buffers.depth[y], *z_below = buffers.depth[y + 1];
     const std::int16_t *body = buffers.body[y], *body_below = buffers.body[y + 1];
+    std::uint8_t* marked = contour[y];
     const auto step = [&](int one, float z1, int other, float z2) {
-      if (one < 0 && other < 0) return false;
-      if (one < 0 || other < 0) return true;
+      if (one < 0 || other < 0) return one != other;
       return ids[one] != ids[other] || std::abs(z1 - z2) > kContourDepth;
     };
     for (int x = 0; x + 1 < size.width; ++x)
       if (step(body[x], z[x], body[x + 1], z[x + 1]) ||
           step(body[x], z[x], body_below[x], z_below[x]))
-        contour(y, x) = 255;
+        marked[x] = 255;
   }
   const int width = std::max(1, static_cast<int>(std::lround(0.45 * unit)));
   cv::dilate(contour, contour, cv::getStructuringElement(cv::MORPH_ELLIPSE, {width, width}));
   cv::blur(contour, contour, {2, 2});
   for (int y = 0; y < size.height; ++y) {
+    const std::uint8_t* dark = contour[y];
     auto* pixel = picture.ptr<cv::Vec3b>(y);
     for (int x = 0; x < size.width; ++x) {
-      if (contour(y, x) == 0) continue;
-      const int keep = 255 - contour(y, x) * 3 / 4;
+      if (dark[x] == 0) continue;
+      const int keep = 255 - dark[x] * 3 / 4;
       for (int k = 0; k < 3; ++k) pixel[x][k] = static_cast<std::uint8_t>(pixel[x][k] * keep / 255);
     }
   }

@@ -54,12 +54,15 @@ class Sheet {
 /// Pixels of a raster sheet are drawn at this multiple.
 inline constexpr int kOversampling = 2;
 
+/// Instead of a suffix: the bytes of a sheet are its pixels, blue, green, red.
+inline constexpr const char* kPixels = "pixels";
+
 /// What a sheet is made for.
 struct SheetSize {
   int width_px = 1600, height_px = 1000;
   double unit = 1;        ///< px per logical unit
   double width_mm = 180;  ///< as printed
-  std::string suffix;     ///< ".png", ".jpg", ".jpeg", ".pdf" or ".svg"
+  std::string suffix;     ///< ".png", ".jpg", ".jpeg", ".pdf" or ".svg"; kPixels: no file
 };
 
 /// DejaVu Sans. Throws std::runtime_error naming `picture` when the files are not found.

@@ -23,6 +23,9 @@
 
 namespace regrasp {
 
+/// A picture in memory instead of a file: width x height x {blue, green, red}, row by row.
+using Pixels = std::vector<std::uint8_t>;
+
 struct PlotOptions {
   double last_s = 0;  ///< only the newest seconds of the history; 0 = all [s]
   int width = 1600;   ///< [px]
@@ -45,6 +48,8 @@ struct PlotOptions {
 /// marks.
 void PlotQuality(std::span<const Frame> history, std::span<const Event> events,
                  const HandModel& hand, const PlotOptions& options, const std::string& path);
+Pixels QualityPixels(std::span<const Frame> history, std::span<const Event> events,
+                     const HandModel& hand, const PlotOptions& options);
 
 /// One run of a comparison.
 struct LabelledRun {
@@ -70,6 +75,8 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
 /// sides.
 void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
                const PlotOptions& options, const std::string& path);
+Pixels ScenePixels(const Frame& frame, const HandModel& hand, const ObjectModel& object,
+                   const PlotOptions& options);
 
 /// Figure 3b: the finger gait over time: the state of the gait by the paper's names, the role of
 /// every finger, the object's angle (reference and achieved), manipulability of the finger that

@@ -1,24 +1,15 @@
 #include "cli/run/gif.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <unordered_map>
 
+#include "cli/run/palette.h"
+
 namespace regrasp::run {
 namespace {
 
-constexpr int kReds = 6, kGreens = 7, kBlues = 6;  // the eye tells greens apart best
 constexpr int kRootBits = 8, kMaxBits = 12;
-
-std::uint8_t Level(int value, int levels) {
-  return static_cast<std::uint8_t>((value * (levels - 1) + 127) / 255);
-}
-
-std::uint8_t IndexOf(const std::uint8_t* bgr) {
-  return static_cast<std::uint8_t>(
-      (Level(bgr[2], kReds) * kGreens + Level(bgr[1], kGreens)) * kBlues + Level(bgr[0], kBlues));
-}
 
 /// Codes of growing width, in blocks of at most 255 bytes.
 class Blocks {
@@ -62,12 +53,7 @@ Gif::Gif(const std::string& path, int width, int height, double delay_s)
   out_ << "GIF89a";
   Number(width);
   Number(height);
-  out_.put('\xf7').put(0).put(0);  // 256 colours for all pictures
-  for (int i = 0; i < 256; ++i) {
-    const int r = i / (kGreens * kBlues), g = i / kBlues % kGreens, b = i % kBlues;
-    for (const int value : {r * 255 / (kReds - 1), g * 255 / (kGreens - 1), b * 255 / (kBlues - 1)})
-      out_.put(static_cast<char>(std::min(value, 255)));
-  }
+  out_.put('\x70').put(0).put(0);  // 8 bits a channel; each picture has colours of its own
   out_ << std::string("\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0", 19);  // again and again
 }
 
@@ -87,15 +73,22 @@ void Gif::Add(std::span<const std::uint8_t> bgr) {
   Number(0);
   Number(width_);
   Number(height_);
-  out_.put(0).put(kRootBits);
+  const std::vector<Bgr> palette = PaletteOf(bgr);
+  const std::vector<std::uint8_t> indices = Dithered(bgr, width_, palette);
+  out_.put('\x87');  // 256 colours, red first
+  for (std::size_t i = 0; i < 256; ++i) {
+    const Bgr colour = i < palette.size() ? palette[i] : Bgr{};
+    for (const std::size_t k : {2, 1, 0}) out_.put(static_cast<char>(colour[k]));
+  }
+  out_.put(kRootBits);
   constexpr int kClear = 1 << kRootBits, kEnd = kClear + 1;
   Blocks blocks(&out_);
   std::unordered_map<int, int> codes;  // (code of a string, next pixel) -> code of both
   int bits = kRootBits + 1, next = kEnd + 1;
   blocks.Put(kClear, bits);
-  int string = IndexOf(bgr.data());
-  for (std::size_t i = 3; i + 2 < bgr.size(); i += 3) {
-    const int pixel = IndexOf(&bgr[i]);
+  int string = indices.front();
+  for (std::size_t i = 1; i < indices.size(); ++i) {
+    const int pixel = indices[i];
     if (const auto known = codes.find(string << 8 | pixel); known != codes.end()) {
       string = known->second;
       continue;

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Animated GIF (version 89a, W3C): 252 fixed colours, LZW.
+/// Animated GIF (version 89a, W3C): 256 colours of its own for each picture, LZW.
 
 #include <cstdint>
 #include <fstream>

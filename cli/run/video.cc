@@ -1,12 +1,12 @@
 #include "cli/run/video.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
@@ -21,20 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kWidth = 1280, kSceneHeight = 640, kCurveHeight = 320;
-
-/// A directory for single pictures, removed at the end.
-struct Scratch {
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "regrasp-video-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("cannot make a directory in /tmp");
-    path = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  fs::path path;
-};
 
 class Film {
  public:
@@ -84,43 +70,72 @@ class GifFilm : public Film {
   Gif gif_;
 };
 
-/// Draws the present moment.
+/// Draws moments, several at a time.
 class Painter {
  public:
-  Painter(const SessionConfig& config, bool scene_only) : config_(config), scene_only_(scene_only) {
+  Painter(const SessionConfig& config, bool scene_only)
+      : config_(config), keep_s_(scene_only ? 0 : kCurveWindow_s) {
     scene_.width = curve_.width = kWidth;
     scene_.height = kSceneHeight;
     curve_.height = kCurveHeight;
     curve_.last_s = kCurveWindow_s;
     curve_.object_name = config.model.object.name;
   }
-  cv::Size size() const { return {kWidth, kSceneHeight + (scene_only_ ? 0 : kCurveHeight)}; }
+  cv::Size size() const { return {kWidth, kSceneHeight + (scene_only() ? 0 : kCurveHeight)}; }
 
-  /// Keeps the moment for the curves.
-  void See(Session* session) {
-    if (scene_only_) history_.clear();
+  /// Keeps the moment for the curves, and to be drawn with the next Paint() when it is `shown`.
+  void See(Session* session, bool shown) {
+    if (waiting_.empty()) Forget();
     session->Snapshot(&history_.emplace_back(), false);
     for (const Event& event : session->TakeEvents()) events_.push_back(event);
+    // A curve needs two moments.
+    if (shown && (scene_only() || history_.size() > 1)) waiting_.push_back(history_.size());
   }
-  /// A curve needs two moments.
-  bool ready() const { return scene_only_ || history_.size() > 1; }
-  cv::Mat Paint() const {
-    const std::string scene = scratch_.path / "scene.png", curve = scratch_.path / "curve.png";
-    PlotScene(history_.back(), config_.model.hand, config_.model.object, scene_, scene);
-    const cv::Mat picture = cv::imread(scene);
-    if (scene_only_) return picture;
-    PlotQuality(history_, events_, config_.model.hand, curve_, curve);
-    cv::Mat both;
-    cv::vconcat(picture, cv::imread(curve), both);
-    return both;
+  bool full() const { return waiting_.size() >= kAtOnce; }
+
+  /// The pictures of what waits, in order.
+  std::vector<cv::Mat> Paint() {
+    std::vector<std::future<cv::Mat>> drawn;
+    for (const std::size_t seen : waiting_)
+      drawn.push_back(std::async(std::launch::async, [this, seen] { return Draw(seen); }));
+    std::vector<cv::Mat> pictures;
+    for (auto& picture : drawn) pictures.push_back(picture.get());
+    waiting_.clear();
+    return pictures;
   }
 
  private:
+  static constexpr std::size_t kAtOnce = 4;
+
+  bool scene_only() const { return keep_s_ == 0; }
+
+  /// The moment that was the `seen`-th in the history, counted from 1.
+  cv::Mat Draw(std::size_t seen) const {
+    const std::span<const Frame> history = std::span(history_).first(seen);
+    const HandModel& hand = config_.model.hand;
+    cv::Mat picture(size(), CV_8UC3);
+    std::ranges::copy(ScenePixels(history.back(), hand, config_.model.object, scene_),
+                      picture.ptr());
+    if (!scene_only())
+      std::ranges::copy(QualityPixels(history, events_, hand, curve_), picture.ptr(kSceneHeight));
+    return picture;
+  }
+
+  /// What no later picture shows.
+  void Forget() {
+    if (history_.empty()) return;
+    const double since_s = history_.back().time_s - keep_s_;
+    const auto first =
+        std::ranges::find_if(history_, [&](const Frame& frame) { return frame.time_s >= since_s; });
+    history_.erase(history_.begin(), first);
+    std::erase_if(events_, [&](const Event& event) { return event.tick < history_.front().tick; });
+  }
+
   const SessionConfig& config_;
-  const bool scene_only_;
-  const Scratch scratch_;
+  const double keep_s_;  ///< of history [s]
   PlotOptions scene_, curve_;
   std::vector<Frame> history_;
+  std::vector<std::size_t> waiting_;
   std::vector<Event> events_;
 };
 
@@ -155,12 +170,12 @@ VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std
     if (!replay.RunTo(std::llround((options.stretch.from_s + i * step_s) / dt)))
       throw std::runtime_error(fmt::format("the replay differs from the recording at tick {}",
                                            replay.divergence().tick));
-    painter.See(&replay.session());
-    if (i < 0 || !painter.ready()) continue;
-    film->Add(painter.Paint());
-    if (!on_picture(++result.frames, total)) {
-      result.interrupted = true;
-      return result;
+    painter.See(&replay.session(), i >= 0);
+    if (!painter.full() && i + 1 < total) continue;
+    for (const cv::Mat& picture : painter.Paint()) {
+      film->Add(picture);
+      result.interrupted = !on_picture(++result.frames, total);
+      if (result.interrupted) return result;
     }
   }
   film->Finish();

@@ -170,6 +170,21 @@ TEST_F(Snapshots, SceneOfAnotherHandIsRefused) {
   EXPECT_NE(error.find(File("scene.png")), std::string::npos) << error;
 }
 
+TEST_F(Snapshots, APictureInMemoryIsThatOfTheFile) {
+  PlotOptions options;
+  options.width = 640;
+  options.height = 400;
+  PlotScene(run_.back(), hand_, object_, options, File("scene.png"));
+  PlotQuality(run_, events_, hand_, options, File("quality.png"));
+  for (const auto& [pixels, name] :
+       {std::pair{ScenePixels(run_.back(), hand_, object_, options), "scene.png"},
+        std::pair{QualityPixels(run_, events_, hand_, options), "quality.png"}}) {
+    const cv::Mat picture = cv::imread(File(name));
+    ASSERT_EQ(pixels.size(), picture.total() * picture.elemSize());
+    EXPECT_TRUE(std::equal(pixels.begin(), pixels.end(), picture.data)) << name;
+  }
+}
+
 TEST_F(Snapshots, SceneWithADroppedObjectStillShowsTheHandAtItsSize) {
   const auto drawn = [&](const Frame& frame) {
     PlotScene(frame, hand_, object_, {}, File("scene.png"));
