@@ -14,11 +14,11 @@ struct ExplorationParameters {
   double epsilon = 4.0;            ///< line 3: the gradient norm that counts as converged [1/m]
   int converged_updates = 10;      ///< line 3: for so many consecutive updates
   int max_cycles = 8000;           ///< line 3: N_max [ticks]
-  int update_cycles = 50;          ///< line 4: n [ticks]
+  int update_cycles = 25;          ///< line 4: n [ticks]
   double min_displacement = 3e-4;  ///< an update waits until the contact has moved so far [m]
   double gradient_max = 60;        ///< line 7: cap of the gradient norm [1/m]
-  double eta = 3e-4;               ///< line 11: speed per gradient [m²/s]
-  double speed_min = 0.004;        ///< [m/s]
+  double eta = 1e-3;               ///< line 11: speed per gradient [m²/s]
+  double speed_min = 0.006;        ///< [m/s]
   double speed_max = 0.015;        ///< [m/s]
   double normal_force = 0.4;       ///< of the exploring finger [N]
   double max_excursion = 0.008;    ///< from where it started [m]
@@ -27,9 +27,9 @@ struct ExplorationParameters {
       -0.05;  ///< link axis . outward normal: above it the contact nears the side of the tip
   double clearance = 0.002;                   ///< a link of another finger this near is a wall [m]
   double wall_return = 5.0;                   ///< speed back from behind a wall, per depth [1/s]
-  double dither_speed = 0.005;                ///< least_squares: circular dither [m/s]
-  double dither_hz = 1.5;                     ///< least_squares: its frequency
-  double forgetting = 0.85;                   ///< least_squares: weight of the past per update
+  double dither_speed = 0.008;                ///< least_squares: circular dither [m/s]
+  double dither_hz = 3.0;                     ///< least_squares: its frequency
+  double forgetting = 0.80;                   ///< least_squares: weight of the past per update
   double stability_weight = 1.0;              ///< combined: weight of stability in the linear sum
   Vector3d turn_axis_W = -Vector3d::UnitZ();  ///< reserve: axis of the coming turn, sense included
   double reserve_manipulability = 0.1;  ///< reserve: rad per manipulability that count with it

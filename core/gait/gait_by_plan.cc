@@ -31,11 +31,13 @@ void FingerGait::EndPlan(const ControlTick& tick) {
   const double scarce =
       std::clamp(1 - tick.margins.without[finger] / tick.gait.margin_wanted, 0.0, 1.0);
   const double far = (p_WC - tick.finger(finger).p_WC).norm();
+  const bool stands = tick.finger(finger).ticks_without_contact == 0;
+  const bool gains = far > tick.gait.skip_distance &&
+                     landing.gain > tick.gait.worth + tick.gait.worth_scarce * scarce;
   const bool worth =
       !landing.stays &&
       (makes_room ? landing.margin > tick.margins.without[room_for_] + tick.gait.room_gain
-                  : far > tick.gait.skip_distance &&
-                        landing.gain > tick.gait.worth + tick.gait.worth_scarce * scarce);
+                  : !stands || gains);
   Enter(GaitPhase::kChoose);
   const bool blocked = landing.blocked && !landing.stays;
   if ((blocked || (plan_.crowded() && !worth)) && !makes_room && !put_off_.contains(finger)) {
@@ -43,7 +45,6 @@ void FingerGait::EndPlan(const ControlTick& tick) {
     waiting_.add(finger);
     return;
   }
-  const bool stands = tick.finger(finger).ticks_without_contact == 0;
   if (landing.found && worth && !(blocked && stands)) StartRegrasp(tick, finger, landing);
 }
 

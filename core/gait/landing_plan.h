@@ -33,8 +33,8 @@ struct Landing {
   Vector3d normal_O = Vector3d::UnitZ();  ///< outward
   double unknown = 0;                     ///< angle to the nearest felt direction [rad]
   double reserve = 0;                     ///< [rad]
-  double gain = 0;    ///< in J over staying; the whole of J where the finger stands nowhere
-  double score = 0;   ///< J
+  double gain = 0;                        ///< in J over staying; J where the finger stands nowhere
+  double score = 0;                       ///< J
   double margin = 0;  ///< ρ without the finger for which room is made, where there is one [N]
   template <typename V>
   void Fields(V& v) {
@@ -124,7 +124,7 @@ class LandingPlan {
   int without_ = 0;                               // the finger whose absence is examined next
   double sum_ = 0, least_ = 0, after_ = 0;        // shares of the load margin so far
   int count_ = 0;
-  double stay_score_ = -10;  // far below any, where the finger stands nowhere
+  double stay_score_ = 0;  // J of staying, where the finger stands
   Landing best_;
   bool crowded_ = false;
 };
