@@ -1,11 +1,8 @@
-// Measures what the README claims, straight on the session (no daemon): every table names this
-// command.
+// Holding, one motion without a regrasp, and whether the same run gives the same bits: straight on
+// the session. Turns and explorations are measured by `regrasp experiment`.
 //   claims hold      [--seeds N] [--first S] [--seconds T]   six gravity directions
 //   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg,
 //                    or those of --object A,B,... (names or .urdf files) [--inertia-from-shape]
-//   claims explore   [--seeds N] [--first S] [--criterion C] [--estimator E] [--finger NAME]
-//   claims rotate    [--seeds N] [--first S] [--turns T | --angle DEG] [--axis X,Y,Z | all]
-//                    [--speed DEG_S] [--explore] [--push N]  a push of so much for 0.1 s a second
 //   claims move      [--seeds N] [--first S] [--angle DEG] [--offset MM] [--axis X,Y,Z | all]
 //                    one motion about and along the axis, without a regrasp
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
@@ -32,7 +29,6 @@
 #include "bench/settings.h"
 #include "bench/trial.h"
 #include "core/hand/scenario.h"
-#include "core/session/completed.h"
 #include "core/session/session.h"
 
 using namespace regrasp;
@@ -40,13 +36,12 @@ using namespace regrasp;
 namespace {
 
 struct Options {
-  std::string what, hand = "shadow", noise = "paper", object, criterion = "manipulability",
-                    estimator = "least_squares", finger;
+  std::string what, hand = "shadow", noise = "paper", object;
   int seeds = 5, jobs = 2;
   std::uint64_t first = 1;
-  double seconds = 60, turns = 1, speed = 0, tilt = -1, push = 0, angle = 0, offset_mm = 0;
+  double seconds = 60, tilt = -1, angle = 0, offset_mm = 0;
   std::string axis = "0,0,-1";
-  bool exact = false, rows = false, exploring = false, inertia_from_shape = false;
+  bool exact = false, rows = false, inertia_from_shape = false;
   std::vector<ParameterSetting> set;
 };
 
@@ -204,166 +199,6 @@ int Objects(const Options& o) {
   return 0;
 }
 
-int Explore(const Options& o) {
-  const SessionConfig probe = MakeConfig(o, 1, o.object);
-  int total_rose = 0, total = 0;
-  for (int finger = 0; finger < probe.model.hand.num_fingers(); ++finger) {
-    const std::string& name = probe.model.hand.fingers[finger].name;
-    if (!o.finger.empty() && o.finger != name) continue;
-    const auto rows = Parallel(o.seeds, o.jobs, [&](int k) -> Row {
-      Session session(MakeConfig(o, o.first + k, o.object));
-      if (!GraspObject(session)) return {kFailed};
-      Command c;
-      c.type = CommandType::kExplore;
-      c.finger = finger;
-      c.seed = o.first + k;
-      for (const CriterionInfo& criterion : kCriterionTable)
-        if (criterion.name == o.criterion) c.criterion = criterion.id;
-      c.estimator = o.estimator == "secant" ? Estimator::kSecant : Estimator::kLeastSquares;
-      const Vector3d p0 = session.truth().p_WO;
-      const JobRecord job = RunJob(session, c, {.limit_s = 60});
-      for (int t = 0; t < 1000; ++t) session.Tick();
-      return {static_cast<double>(job.state == JobState::kDone),
-              static_cast<double>(job.explore.reason),
-              job.explore.phi_true_initial,
-              job.explore.phi_true_final,
-              job.explore.path_length_m * 1e3,
-              static_cast<double>(job.explore.cycles),
-              static_cast<double>(session.state() == SessionState::kDropped),
-              (session.truth().p_WO - p0).norm() * 1e3};
-    });
-    int rose = 0, failed = 0, dropped = 0, converged = 0, refused = 0;
-    std::vector<double> gain, cycles, moved;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const Row& r = rows[k];
-      if (r.empty() || r[0] == kFailed) {
-        ++failed;
-        continue;
-      }
-      if (o.rows) {
-        std::printf(
-            "  seed %llu done %.0f reason %s phi %.4f -> %.4f path %.1f mm cycles %.0f dropped "
-            "%.0f moved %.2f mm\n",
-            static_cast<unsigned long long>(o.first + k), r[0],
-            Name(static_cast<ExploreReason>(static_cast<int>(r[1]))).data(), r[2], r[3], r[4], r[5],
-            r[6], r[7]);
-      }
-      if (r[0] == 0 && static_cast<ExploreReason>(static_cast<int>(r[1])) == ExploreReason::kNone) {
-        ++refused;  // the load margin without this finger is too small: the object stays held
-        continue;
-      }
-      rose += r[3] > r[2] && r[6] == 0;
-      dropped += r[6] != 0;
-      converged += static_cast<ExploreReason>(static_cast<int>(r[1])) == ExploreReason::kGradient;
-      gain.push_back(r[3] / r[2] - 1);
-      cycles.push_back(r[5]);
-      moved.push_back(r[7]);
-    }
-    std::printf(
-        "%-8s phi rose %2d/%-2zu  refused %d  dropped %d  not grasped %d  converged %d  gain mean "
-        "%+.1f %%  "
-        "cycles mean %.0f  object moved max %.2f mm\n",
-        name.c_str(), rose, rows.size(), refused, dropped, failed, converged, 100 * Mean(gain),
-        Mean(cycles), Max(moved));
-    std::fflush(stdout);
-    total_rose += rose;
-    total += static_cast<int>(rows.size());
-  }
-  std::printf("all      phi rose %d/%d\n", total_rose, total);
-  return 0;
-}
-
-/// One regrasp that was not broken off, by noise-free values of its objective.
-struct PhiChange {
-  int finger;
-  double before, start, after;
-};
-
-/// {done, angle deg, deg/min, max position error mm, max tilt deg, regrasps, slips, refused,
-/// dropped, angle error deg, regrasps on manipulability, of them higher after than before,
-/// explorations begun below 98 % of best, of them rose, mean change start-to-after, mean after,
-/// explorations for stability (S_F), of them rose, mean at their start, mean after}
-Row RotateTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
-  if (!GraspObject(session)) return {kFailed};
-  Command c;
-  c.type = CommandType::kRotate;
-  c.angle_rad = 2 * M_PI * o.turns;
-  c.axis_W = axis;
-  c.speed_rad_s = o.speed * M_PI / 180;
-  double slips = 0, refused = 0, touching = 0;
-  std::vector<PhiChange> changes, shifts;  // for manipulability; for stability
-  JobOptions options;
-  options.limit_s = std::abs(o.turns) * 1000 + 30;
-  options.push_n = o.push;
-  options.on_tick = [&] { touching += session.truth().link_link_contacts > 0; };
-  options.on_event = [&](const Event& e) {
-    slips += e.kind == EventKind::kSlip;
-    refused += e.kind == EventKind::kRefused;
-    if (e.kind != EventKind::kRegrasp) return;
-    const RegraspRecord& r = session.last_regrasp();
-    if (r.aborted || r.phi_start <= 0) return;
-    const PhiChange change{r.finger, r.phi_before, r.phi_start, r.phi_after};
-    if (r.criterion == Criterion::kStability)
-      shifts.push_back(change);
-    else if (!r.on_stability)
-      changes.push_back(change);
-  };
-  const JobRecord job = RunJob(session, c, options);
-  std::map<int, double> best;
-  for (const PhiChange& p : changes) best[p.finger] = std::max(best[p.finger], p.after);
-  double rose = 0, low = 0, low_rose = 0, gain = 0, phi = 0;
-  for (const PhiChange& p : changes) {
-    if (o.rows && o.exploring)
-      std::fprintf(stderr, "    finger %d manipulability %.4f -> %.4f -> %.4f\n", p.finger,
-                   p.before, p.start, p.after);
-    rose += p.after > p.before;
-    gain += p.after / p.start - 1;
-    phi += p.after;
-    if (p.start >= 0.98 * best[p.finger]) continue;
-    low += 1;
-    low_rose += p.after > p.start;
-  }
-  double raised = 0, stability_start = 0, stability_after = 0;
-  for (const PhiChange& p : shifts) {
-    raised += p.after > p.start;
-    stability_start += p.start / static_cast<double>(shifts.size());
-    stability_after += p.after / static_cast<double>(shifts.size());
-  }
-  const RotateResult& r = job.rotate;
-  const double wanted = o.turns * 360, angle = r.angle_rad * 180 / M_PI;
-  if (o.rows || job.state != JobState::kDone)
-    std::fprintf(stderr,
-                 "  seed %llu %s %.1f deg in %.1f s  offset %.2f mm  tilt %.1f deg  regrasps %d  "
-                 "motions %d  slips %.0f  "
-                 "refused %.0f  link-link %.1f %%  %s\n",
-                 static_cast<unsigned long long>(seed), Name(job.state).data(), angle, r.sim_time_s,
-                 r.max_position_error_m * 1e3, r.max_tilt_rad * 180 / M_PI, r.regrasps,
-                 r.gait_cycles + 1, slips, refused,
-                 r.sim_time_s > 0 ? touching / r.sim_time_s / 10 : 0.0, job.error);
-  const bool completed =
-      job.state == JobState::kDone && TurnedAsAsked(r.angle_rad, 2 * M_PI * o.turns);
-  return {completed ? 1.0 : 0.0,
-          angle,
-          r.sim_time_s > 0 ? std::abs(angle) / r.sim_time_s * 60 : 0,
-          r.max_position_error_m * 1e3,
-          r.max_tilt_rad * 180 / M_PI,
-          static_cast<double>(r.regrasps),
-          slips,
-          refused,
-          r.dropped ? 1.0 : 0.0,
-          std::abs(angle - wanted),
-          static_cast<double>(changes.size()),
-          rose,
-          low,
-          low_rose,
-          changes.empty() ? 0 : gain / static_cast<double>(changes.size()),
-          changes.empty() ? 0 : phi / static_cast<double>(changes.size()),
-          static_cast<double>(shifts.size()),
-          raised,
-          stability_start,
-          stability_after};
-}
-
 /// The axes of --axis by name; ends the program where it is wrong.
 std::vector<std::pair<std::string, Vector3d>> Axes(const Options& o) {
   if (o.axis == "all")
@@ -375,70 +210,6 @@ std::vector<std::pair<std::string, Vector3d>> Axes(const Options& o) {
     std::exit(2);
   }
   return {{o.axis, a.normalized()}};
-}
-
-int Rotate(const Options& o) {
-  for (const auto& [label, axis] : Axes(o)) {
-    const auto rows = Parallel(o.seeds, o.jobs, [&, a = axis](int k) {
-      Session session(MakeConfig(o, o.first + k, o.object));
-      return RotateTrial(session, o, a, o.first + k);
-    });
-    int done = 0, failed = 0, dropped = 0;
-    std::vector<double> rate, offset, tilt, error, slips, refused, gain, phi;
-    double explored = 0, rose = 0, low = 0, low_rose = 0, shifted = 0, raised = 0;
-    std::vector<double> stability_start, stability_after;
-    for (const Row& r : rows) {
-      if (r.empty() || r[0] == kFailed) {
-        ++failed;
-        continue;
-      }
-      done += r[0] == 1.0;
-      dropped += r[8] != 0;
-      if (r[0] == 1.0) {
-        rate.push_back(r[2]);
-        error.push_back(r[9]);
-      }
-      offset.push_back(r[3]);
-      tilt.push_back(r[4]);
-      slips.push_back(r[6]);
-      refused.push_back(r[7]);
-      gain.push_back(r[14]);
-      phi.push_back(r[15]);
-      explored += r[10];
-      rose += r[11];
-      low += r[12];
-      low_rose += r[13];
-      shifted += r[16];
-      raised += r[17];
-      if (r[16] == 0) continue;
-      stability_start.push_back(r[18]);
-      stability_after.push_back(r[19]);
-    }
-    std::printf(
-        "%-8s %.3g turns  done %2d/%-2zu  dropped %d  not grasped %d  mean %5.1f deg/min  offset "
-        "max %.2f mm "
-        " tilt max %.1f deg  angle error max %.1f deg  slips %.1f  refused %.1f\n",
-        label.c_str(), o.turns, done, rows.size(), dropped, failed, Mean(rate), Max(offset),
-        Max(tilt), Max(error), Mean(slips), Mean(refused));
-    if (explored > 0)
-      std::printf(
-          "         manipulability after a regrasp %.4f on average; above that before it in %.0f "
-          "of %.0f\n",
-          Mean(phi), rose, explored);
-    if (o.exploring)
-      std::printf(
-          "         explorations raised it by %.1f %% on average; in %.0f of the %.0f that began "
-          "below 98 %% of "
-          "the best reached\n",
-          100 * Mean(gain), low_rose, low);
-    if (o.exploring && shifted > 0)
-      std::printf(
-          "         before the opposing finger leaves, explorations took the stability without it "
-          "from %.3f to %.3f on average; it rose in %.0f of %.0f\n",
-          Mean(stability_start), Mean(stability_after), raised, shifted);
-    std::fflush(stdout);
-  }
-  return 0;
 }
 
 /// The joint of `finger` that is nearest to a limit, by its index in the hand; -1 for no finger.
@@ -588,29 +359,14 @@ int Main(int argc, char** argv) {
       o.noise = next();
     else if (a == "--object")
       o.object = next();
-    else if (a == "--criterion")
-      o.criterion = next();
-    else if (a == "--estimator")
-      o.estimator = next();
-    else if (a == "--finger")
-      o.finger = next();
-    else if (a == "--turns")
-      o.turns = std::stod(next());
     else if (a == "--angle")
-      o.turns = (o.angle = std::stod(next())) / 360;
+      o.angle = std::stod(next());
     else if (a == "--offset")
       o.offset_mm = std::stod(next());
-    else if (a == "--explore") {
-      o.exploring = true;
-      o.set.push_back(ReadSetting("gait.mode=exploring"));
-    } else if (a == "--tilt")
+    else if (a == "--tilt")
       o.tilt = std::stod(next());
-    else if (a == "--push")
-      o.push = std::stod(next());
     else if (a == "--axis")
       o.axis = next();
-    else if (a == "--speed")
-      o.speed = std::stod(next());
     else if (a == "--jobs")
       o.jobs = std::stoi(next());
     else if (a == "--exact")
@@ -630,13 +386,11 @@ int Main(int argc, char** argv) {
     MakeConfig(o, o.first, o.object);  // throws here, before any trial, what is wrong with them
   if (o.what == "hold") return Hold(o);
   if (o.what == "objects") return Objects(o);
-  if (o.what == "explore") return Explore(o);
-  if (o.what == "rotate") return Rotate(o);
   if (o.what == "move") return Move(o);
   if (o.what == "repeat") return Repeat(o);
-  std::fprintf(stderr,
-               "usage: claims hold|objects|explore|rotate|move|repeat [options]; see the head of "
-               "bench/claims.cc\n");
+  std::fprintf(
+      stderr,
+      "usage: claims hold|objects|move|repeat [options]; see the head of bench/claims.cc\n");
   return 2;
 }
 

@@ -15,7 +15,9 @@ namespace regrasp {
 
 struct JobOptions {
   double limit_s = 60;
-  double push_n = 0;  ///< a push of so much for 0.1 s each second, in random directions
+  /// A push of so much for 0.1 s each second of the job, in random directions: the very pushes of
+  /// `regrasp experiment rotation --push`.
+  double push_n = 0;
   std::function<void(const Event&)> on_event = {};
   std::function<void()> on_tick = {};
 };
@@ -27,10 +29,12 @@ inline JobRecord RunJob(Session& session, Command command, const JobOptions& opt
   static std::int64_t next_id = 1;
   command.job = next_id++;
   session.Apply(command);
-  const auto end = session.tick() + static_cast<std::int64_t>(1000 * options.limit_s);
+  const std::int64_t begin = session.tick();
+  const auto end = begin + static_cast<std::int64_t>(1000 * options.limit_s);
   RandomStream pushes(session.seed(), kPushStream);
   while (session.tick() < end) {
-    if (options.push_n > 0 && session.tick() % 1000 == 0) {
+    const std::int64_t passed = session.tick() - begin;
+    if (options.push_n > 0 && passed > 0 && passed % 1000 == 0) {
       Command push;
       push.type = CommandType::kPush;
       push.force_W = options.push_n * pushes.Normal3().normalized();

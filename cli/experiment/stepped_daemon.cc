@@ -12,8 +12,8 @@ namespace regrasp::cli {
 namespace {
 
 constexpr double kNoLimit = 0;
-constexpr const char* kStart = "start";                         // the checkpoint of the last grasp
-constexpr std::int64_t kGraspChunk = 100, kGraspLimit = 30000;  // [ticks]
+constexpr const char* kStart = "start";      // the checkpoint of the last grasp
+constexpr std::int64_t kGraspLimit = 30000;  // [ticks]
 
 std::vector<std::string> WithSpeed(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"--paused", "--speed", "max"});
@@ -30,9 +30,11 @@ bool Running(const Json& record) {
 SteppedDaemon::SteppedDaemon(std::vector<std::string> arguments)
     : daemon_(WithSpeed(std::move(arguments))), client_(daemon_.socket(), kNoLimit) {}
 
-void SteppedDaemon::Step(std::int64_t ticks) {
+void SteppedDaemon::Step(std::int64_t ticks) { Step({{"ticks", ticks}}); }
+
+void SteppedDaemon::Step(const Json& params) {
   try {
-    const Json step = Call("step", {{"ticks", ticks}});
+    const Json step = Call("step", params);
     Call("job.wait", {{"id", step.at("job")}});
   } catch (const CliError& error) {
     if (error.code != kSimulationFault) throw;
@@ -50,7 +52,7 @@ Json SteppedDaemon::Run(const std::string& method, const Json& params, std::int6
   }
   Json record;
   for (std::int64_t ticks = 0; ticks < max_ticks; ticks += chunk_ticks) {
-    Step(chunk_ticks);
+    Step({{"ticks", chunk_ticks}, {"until_job_ends", true}});
     // Paused it is already: the answer comes when all that the last tick did has been told, a job
     // that ended among it.
     Call("pause");
@@ -75,7 +77,7 @@ Json SteppedDaemon::Grasp(std::int64_t seed) {
   }
   start_ = nullptr;
   Call("reset", {{"seed", seed}});
-  grasp_ = Run("grasp", Json::object(), kGraspChunk, kGraspLimit);
+  grasp_ = Run("grasp", Json::object(), kGraspLimit, kGraspLimit);
   if (Done(grasp_)) {
     Call("checkpoint.save", {{"name", kStart}});
     start_ = std::move(start);

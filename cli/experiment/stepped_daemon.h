@@ -1,7 +1,7 @@
 #pragma once
 
-/// A private daemon that advances only when told, in whole chunks of ticks: what happens in a run
-/// then depends on its seed and commands alone, never on how fast anything is.
+/// A private daemon that advances only when told: what happens in a run then depends on its seed
+/// and commands alone, never on how fast anything is.
 
 #include <cstdint>
 #include <functional>
@@ -24,10 +24,11 @@ class SteppedDaemon {
   /// Advances by `ticks`; the topics (status, truth, quality, ...) are then those of the last of
   /// them. A simulation that has faulted stays where it is.
   void Step(std::int64_t ticks);
-  /// Sends a command that starts a job and steps in chunks until the job has ended, or has not
-  /// after `max_ticks`. Returns its record. A command that is refused at once gives a record whose
-  /// state is "failed" and whose error says why, as does one on a simulation that has faulted.
-  /// `look` is called after each chunk.
+  /// Sends a command that starts a job and steps in chunks to the tick in which the job ends, or
+  /// for `max_ticks` where it does not: what follows begins in the next tick. Returns its record. A
+  /// command that is refused at once gives a record whose state is "failed" and whose error says
+  /// why, as does one on a simulation that has faulted. `look` is called after each chunk, the last
+  /// of which may be cut.
   Json Run(const std::string& method, const Json& params, std::int64_t chunk_ticks,
            std::int64_t max_ticks, const std::function<void()>& look = {});
   /// Begins a new run when the present one has faulted: what follows is accepted again.
@@ -38,6 +39,8 @@ class SteppedDaemon {
   Json Grasp(std::int64_t seed);
 
  private:
+  void Step(const Json& params);
+
   Json start_;  ///< what the last grasp began from: seed, noise, parameters; null: none is kept
   Json grasp_;  ///< its record
   PrivateDaemon daemon_;

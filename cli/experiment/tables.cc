@@ -145,7 +145,8 @@ TableData GroupTable(const Json& summary) {
   TableData table;
   for (const std::string& key : keys) table.titles.push_back(Title(key));
   if (rotation)
-    Append(&table.titles, {"completed", ">deg/min", ">deg between regrasps", ">offset mm"});
+    Append(&table.titles, {"completed", ">deg/min", ">deg between regrasps", ">offset mm",
+                           ">at most", ">tilt at most deg"});
   else
     Append(&table.titles, {"φ rose"});
   if (map) Append(&table.titles, {"within 5 % of best", ">share of best"});
@@ -160,11 +161,15 @@ TableData GroupTable(const Json& summary) {
     const auto median = [&](const char* name, int digits, double scale) {
       return Median(quantiles.at(name), n, digits, scale);
     };
+    const auto most = [&](const char* name, int digits, double scale) {
+      return Fixed(At(quantiles.at(name), "max"), digits, scale);
+    };
     std::vector<std::string> cells = Settings(group, keys);
     if (rotation)
       Append(&cells,
              {Share(counts.at("completed"), n), median("rate_deg_min", 0, 1),
-              median("step_mean_rad", 1, 180 / M_PI), median("max_position_error_m", 2, 1e3)});
+              median("step_mean_rad", 1, 180 / M_PI), median("max_position_error_m", 2, 1e3),
+              most("max_position_error_m", 2, 1e3), most("max_tilt_rad", 1, 180 / M_PI)});
     else
       Append(&cells, {Share(counts.at("rose"), n)});
     if (map) Append(&cells, {Share(counts.at("near_best"), n), median("share_of_best", 3, 1)});

@@ -21,7 +21,7 @@ constexpr std::int64_t kLongestWatched = 300000;  // of a turn that is looked at
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
 constexpr std::int64_t kHoldTicks = 1000;
 constexpr double kPush_s = 0.1;
-constexpr std::uint64_t kPushStream = 3000;  // as `claims rotate --push` of bench/
+constexpr std::uint64_t kPushStream = 3000;  // as in bench/trial.h
 
 /// How a trial ended, in one word. `record`: of the job that was tried.
 std::string Outcome(const Json& record, const std::string& state) {

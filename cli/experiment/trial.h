@@ -1,11 +1,12 @@
 #pragma once
 
-/// One unit of an experiment, on a daemon of its worker. What a trial is:
+/// One unit of an experiment, on a daemon of its worker. Each job begins in the tick after the end
+/// of the one before, as in bench/zoo.cc: the same seed and settings give the same turn. What a
+/// trial is:
 ///  exploration: new run with the seed, grasp, explore with the seed as that of the start gradient,
-///               hold for one second. As in `claims explore` of bench/.
-///  rotation:    new run with the seed, grasp, rotate; pushed at every full second when the plan
-///  says
-///               so, for 0.1 s, in a direction drawn from the seed.
+///               hold for one second.
+///  rotation:    new run with the seed, grasp, rotate; pushed each second when the plan
+///               says so, for 0.1 s, in a direction drawn from the seed.
 
 #include "cli/experiment/plan.h"
 #include "cli/experiment/stepped_daemon.h"

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 from harness import BIN, Case, DaemonCase, HANG_S, REGRASP, REGRASPD, SOURCE, environment
@@ -31,7 +32,7 @@ INSTEAD = {
 }
 # Measurements: the same program, as short as it can be.
 SHORTER = [(r"--seconds [\d.]+", "--seconds 1"), (r"--seeds \d+", "--seeds 1"), (r"--turns \d+", "--turns 0.1"), (r"(--seeds|-n) \d+", r"\1 1"),
-           (r"bench_socket$", "bench_socket 20"), (r"bench_watchers.*", "bench_watchers 1"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
+           (r"experiment rotation (?!.*--turns)", "experiment rotation --turns 0.1 "), (r"bench_socket$", "bench_socket 20"), (r"bench_watchers.*", "bench_watchers 1"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
 
 
 def help_examples():
@@ -67,7 +68,8 @@ class Documents(DaemonCase):
         line, _ = INSTEAD.get(line, (line, ""))
         if line is None:
             return
-        if "claims " in line or "bench_" in line:
+        if re.search(r"claims |bench_|^regrasp experiment ", line):
+            line = line.replace("-o DIR", f"-o {tempfile.mkdtemp(dir=self.dir)}")
             for pattern, shorter in SHORTER:
                 line = re.sub(pattern, shorter, line)
         done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=self.env, cwd=self.dir, timeout=HANG_S, check=False)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 import re
 import shlex
 import shutil
@@ -180,6 +181,19 @@ class Results(ExperimentCase):
         self.assertLess(float(row["angle_rad"]), 0.65)
         self.assertIn("--axis=0,0,-1", row["command"])
         self.assertEqual(self.summary("turn")["groups"][0]["counts"]["completed"]["k"], 1)
+
+    @unittest.skipUnless((REGRASP.parent / "zoo").exists(), "built without bench/")
+    def test_a_turn_on_a_daemon_is_the_turn_on_the_session_alone(self):
+        zoo = subprocess.run([REGRASP.parent / "zoo", "--objects", "sphere", "--first", "21", "--seeds", "1", "--turns", "0.1", "--push", "0.5", "--rows"],
+                             capture_output=True, text=True, env=environment(REGRASP_MODELS_DIR=str(SOURCE / "models")), timeout=HANG_S, check=True).stdout
+        alone = re.search(r"seed 21 done +(?P<deg>\S+) deg +(?P<s>\S+) s offset +(?P<mm>\S+) mm tilt +(?P<tilt>\S+) deg regrasps (?P<regrasps>\d+)", zoo)
+        self.assertIsNotNone(alone, zoo)
+        self.run_experiment("rotation", "--turns", "0.1", "--push", "0.5", "--seed", "21", "-n", "1", "--models-dir", SOURCE / "models", "-o", self.dir / "turn")
+        (row,) = self.rows("turn")
+        self.assertGreater(float(row["sim_time_s"]), 1, "no push was given")
+        for part, column, digits, scale in [("deg", "angle_rad", 1, 180 / math.pi), ("s", "sim_time_s", 1, 1), ("mm", "max_position_error_m", 2, 1e3),
+                                            ("tilt", "max_tilt_rad", 1, 180 / math.pi), ("regrasps", "regrasps", 0, 1)]:
+            self.assertEqual(alone[part], f"{scale * float(row[column]):.{digits}f}", column)
 
     def test_noise_sweep_sets_both_estimators_side_by_side(self):
         self.run_experiment("noise-sweep", "--finger", "middle", "--noise", "off,paper", "-n", "1", "--rays", "0", "--models-dir", SOURCE / "models",

@@ -1,5 +1,5 @@
 // The finger gait in closed loop, on the session: what it promises, each on one seed. Success rates
-// over seeds are measured by `claims rotate` (bench/claims.cc), not here.
+// over seeds are measured by `regrasp experiment rotation`, not here.
 
 #include <gtest/gtest.h>
 
