@@ -5,7 +5,7 @@
 
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
@@ -137,6 +137,16 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
   legends.back().y = std::max(legends.back().y, canvas.narrow() ? 0 : lower.area.y);
   layout.DrawLegends(&canvas, legends);
   canvas.Save();
+}
+
+void DrawComparison(const PlotInput& input, const std::string& path) {
+  std::vector<LabelledRun> runs;
+  for (const auto& run : input.explorations)
+    runs.push_back({run.empty() ? "" : std::string(Name(run.back().job.explore.criterion)), run});
+  // Numbered where the criterion does not tell them apart.
+  if (std::ranges::all_of(runs, [&](const auto& r) { return r.label == runs[0].label; }))
+    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].label += fmt::format(" ({})", i + 1);
+  PlotQualityComparison(runs, input.hand, input.options, path);
 }
 
 }  // namespace regrasp

@@ -11,7 +11,7 @@
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
 #include "snapshots/outline.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 #include "snapshots/sphere_fit.h"
 #include "snapshots/timeline.h"
 
@@ -390,6 +390,10 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
     canvas.Text({side, y + 26}, fmt::format("one in {} drawn", cloud.stride),
                 {.size = 17, .colour = kGrey});
   canvas.Save();
+}
+
+void DrawContacts(const PlotInput& input, const std::string& path) {
+  PlotContacts(input.frames, input.hand, input.object, input.options, path, input.felt.get());
 }
 
 }  // namespace regrasp

@@ -7,7 +7,7 @@
 #include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
@@ -238,6 +238,10 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   legends[4].y = lower.area.y;
   layout.DrawLegends(&canvas, legends);
   canvas.Save();
+}
+
+void DrawGait(const PlotInput& input, const std::string& path) {
+  PlotGait(input.frames, input.events, input.hand, input.options, path);
 }
 
 }  // namespace regrasp

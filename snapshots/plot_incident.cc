@@ -7,7 +7,7 @@
 #include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
@@ -294,6 +294,10 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
       LineEntry(fmt::format("dropped: {:.2g} mm", note.drop_distance * kMillimetres), limit)};
   DrawLegend(&canvas, {side, panels[2].area.y}, "object, true", errors);
   canvas.Save();
+}
+
+void DrawIncident(const PlotInput& input, const std::string& path) {
+  PlotIncident(input.frames, input.events, input.incident, input.hand, input.options, path);
 }
 
 }  // namespace regrasp

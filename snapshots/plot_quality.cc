@@ -6,7 +6,7 @@
 
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
@@ -193,6 +193,10 @@ Pixels QualityPixels(std::span<const Frame> history, std::span<const Event> even
   Draw(&canvas, frames, events, hand, options);
   const std::string bytes = canvas.Bytes();
   return {bytes.begin(), bytes.end()};
+}
+
+void DrawQuality(const PlotInput& input, const std::string& path) {
+  PlotQuality(input.frames, input.events, input.hand, input.options, path);
 }
 
 }  // namespace regrasp

@@ -7,8 +7,8 @@
 
 #include "core/hand/kinematics.h"
 #include "snapshots/axes.h"
+#include "snapshots/plots.h"
 #include "snapshots/renderer.h"
-#include "snapshots/snapshots.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
@@ -379,6 +379,12 @@ Pixels ScenePixels(const Frame& frame, const HandModel& hand, const ObjectModel&
   DrawScene(&canvas, frame, hand, object, options);
   const std::string bytes = canvas.Bytes();
   return {bytes.begin(), bytes.end()};
+}
+
+void DrawScene(const PlotInput& input, const std::string& path) {
+  if (input.frames.empty())
+    throw std::runtime_error(path + ": nothing to draw: the history is empty");
+  PlotScene(input.frames.back(), input.hand, input.object, input.options, path);
 }
 
 }  // namespace regrasp

@@ -8,6 +8,7 @@
 #include "cli/run/run_window.h"
 #include "core/files/draft.h"
 #include "core/journal/provenance.h"
+#include "snapshots/plots.h"
 
 namespace regrasp::run {
 namespace {
@@ -17,10 +18,8 @@ constexpr int kMostFrames = 6000;     // of a picture: more is not seen
 constexpr std::size_t kCompared = 2;  // explorations of one file
 
 struct Pictured {
-  std::vector<Frame> frames;
-  std::vector<Event> events;
-  LoadedScenario model;
-  std::string changed, note;
+  PlotInput input;
+  std::string note;
 };
 
 /// Executes from tick `from` to `end`, or to the end of the job that begins there.
@@ -41,12 +40,16 @@ Pictured Execute(const std::string& path, double dt, std::int64_t from, std::int
   const std::int64_t last = std::min(end, window.end_tick());
   for (std::int64_t tick = from;; tick = std::min(last, tick + std::max<std::int64_t>(1, step))) {
     run_to(tick);
-    replay.session().Snapshot(&result.frames.emplace_back(), false);
-    for (const Event& event : replay.session().TakeEvents()) result.events.push_back(event);
+    replay.session().Snapshot(&result.input.frames.emplace_back(), false);
+    for (const Event& event : replay.session().TakeEvents()) result.input.events.push_back(event);
     if (tick == last || (one_job && tick > from && !replay.session().job_running())) break;
   }
-  result.model = window.segment().journal->config.model;
-  result.changed = ChangedText(replay.session().parameters(), result.model);
+  const LoadedScenario& model = window.segment().journal->config.model;
+  result.input.felt = std::make_shared<const FeltSurface>(replay.session().felt_surface());
+  result.input.hand = model.hand;
+  result.input.object = model.object;
+  result.input.options.object_name = model.object.name;
+  result.input.options.changed = ChangedText(replay.session().parameters(), model);
   result.note = window.note();
   return result;
 }
@@ -94,57 +97,45 @@ std::vector<Pictured> Explorations(const std::string& path, std::size_t count) {
   return result;
 }
 
-std::vector<std::string> PlotComparison(const std::vector<std::string>& paths, PlotOptions options,
-                                        const std::string& draft) {
-  std::vector<Pictured> pictured;
+/// The last explorations of all files, those of one input.
+std::vector<Pictured> Compared(const std::vector<std::string>& paths) {
+  std::vector<Pictured> all;
   for (const std::string& path : paths)
     for (Pictured& one : Explorations(path, paths.size() == 1 ? kCompared : 1))
-      pictured.push_back(std::move(one));
-  std::vector<LabelledRun> runs;
-  std::vector<std::string> notes;
-  for (const Pictured& one : pictured) {
-    runs.push_back({std::string(Name(one.frames.back().job.explore.criterion)), one.frames});
-    if (!one.note.empty()) notes.push_back(one.note);
-  }
-  if (std::ranges::all_of(runs, [&](const auto& r) { return r.label == runs[0].label; }))
-    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].label += fmt::format(" ({})", i + 1);
-  options.last_s = 0;
-  options.object_name = pictured.front().model.object.name;
-  options.changed = pictured.front().changed;
-  PlotQualityComparison(runs, pictured.front().model.hand, options, draft);
-  return notes;
+      all.push_back(std::move(one));
+  for (const Pictured& one : all) all.front().input.explorations.push_back(one.input.frames);
+  return all;
+}
+
+std::string PicturesOfRuns() {
+  std::string names;
+  for (const PlotRow& plot : kPlotTable)
+    if (plot.of != PlotOf::kIncident) names += (names.empty() ? "" : ", ") + std::string(plot.name);
+  return names;
 }
 
 }  // namespace
 
 std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const std::string& name,
                                   PlotOptions options, const std::string& out) {
-  const bool comparison = name == "comparison";
+  const PlotRow* plot = FindPlot(name);
+  if (plot == nullptr || plot->of == PlotOf::kIncident)
+    throw std::runtime_error(name + ": a run file has the pictures " + PicturesOfRuns());
+  const bool comparison = plot->of == PlotOf::kExplorations;
   if (!comparison && paths.size() > 1)
     throw std::runtime_error("only a comparison shows several runs");
   Draft draft(out, Draft::Existing::kReplace);
+  const std::vector<Pictured> runs =
+      comparison ? Compared(paths) : std::vector{LastJob(paths.front(), options.last_s)};
+  PlotInput input = runs.front().input;
+  options.last_s = 0;
+  options.object_name = input.options.object_name;
+  options.changed = input.options.changed;
+  input.options = options;
+  DrawPlot(name, input, draft.path());
   std::vector<std::string> notes;
-  if (comparison) {
-    notes = PlotComparison(paths, options, draft.path());
-  } else {
-    const Pictured job = LastJob(paths.front(), options.last_s);
-    options.last_s = 0;
-    options.object_name = job.model.object.name;
-    options.changed = job.changed;
-    const HandModel& hand = job.model.hand;
-    if (name == "quality")
-      PlotQuality(job.frames, job.events, hand, options, draft.path());
-    else if (name == "gait")
-      PlotGait(job.frames, job.events, hand, options, draft.path());
-    else if (name == "contacts")
-      PlotContacts(job.frames, hand, job.model.object, options, draft.path());
-    else if (name == "scene")
-      PlotScene(job.frames.back(), hand, job.model.object, options, draft.path());
-    else
-      throw std::runtime_error(
-          name + ": a run file has the pictures quality, contacts, gait, scene, comparison");
-    if (!job.note.empty()) notes.push_back(job.note);
-  }
+  for (const Pictured& run : runs)
+    if (!run.note.empty()) notes.push_back(run.note);
   draft.Commit();
   return notes;
 }

@@ -9,7 +9,7 @@
 
 namespace regrasp::run {
 
-/// Draws `name` (quality, contacts, gait, scene, comparison) of the last segment into `out`, which
+/// Draws `name`, any picture but that of an incident, of the last segment into `out`, which
 /// is replaced: its last job, or the newest `options.last_s` seconds where that is more than 0. A
 /// comparison shows the last exploration of each file, of one file its last two. Throws
 /// std::runtime_error: a picture that a run file does not have, no job or exploration, a replay

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/protocol/methods.h"
+#include "core/protocol/plot_table.h"
 
 namespace regrasp::rows {
 
@@ -30,14 +31,12 @@ inline constexpr std::array kCheckpointRestore = {
               .sentence = "execute the commands again from tick 0, rather than load the state",
               .default_text = "false"},
 };
-inline constexpr std::array<std::string_view, 6> kPlots = {"comparison", "contacts", "gait",
-                                                           "incident",   "quality",  "scene"};
 inline constexpr std::array kPlot = {
     ParamSpec{.name = "name",
               .type = kEnum,
               .sentence = "the picture",
               .required = true,
-              .values = kPlots},
+              .values = kPlotNames},
     ParamSpec{.name = "file",
               .type = kString,
               .sentence = "file name (not a path), written in the daemon's output directory; its "

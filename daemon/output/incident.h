@@ -15,6 +15,8 @@
 
 namespace regrasp {
 
+struct PlotInput;
+
 /// Length of the record [s].
 inline constexpr double kIncidentWindow = 2.0;
 
@@ -75,9 +77,7 @@ std::string IncidentText(const Incident& incident, const HandModel& hand);
 /// std::runtime_error.
 void PruneIncidents(const std::filesystem::path& directory, std::size_t keep);
 
-/// Draws the picture: the newest `last_s` seconds of the window, 0: all. Throws what PlotIncident
-/// throws.
-void DrawIncident(const Incident& incident, const HandModel& hand, double last_s,
-                  const std::string& path);
+/// What its picture is drawn of, the object in its options (snapshots/plots.h).
+PlotInput PictureOf(const Incident& incident, const HandModel& hand);
 
 }  // namespace regrasp

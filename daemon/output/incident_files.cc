@@ -4,7 +4,7 @@
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/wire/frame_json.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 
 namespace regrasp {
 namespace {
@@ -125,12 +125,13 @@ void PruneIncidents(const std::filesystem::path& directory, std::size_t keep) {
   });
 }
 
-void DrawIncident(const Incident& incident, const HandModel& hand, double last_s,
-                  const std::string& path) {
-  std::vector<Frame> frames;
-  frames.reserve(incident.frames.size());
-  for (const auto& frame : incident.frames) frames.push_back(*frame);
-  IncidentNote note;
+PlotInput PictureOf(const Incident& incident, const HandModel& hand) {
+  PlotInput input;
+  for (const auto& frame : incident.frames) input.frames.push_back(*frame);
+  input.events = incident.events;
+  input.hand = hand;
+  input.options.object_name = incident.object;
+  IncidentNote& note = input.incident;
   note.tick = incident.event.tick;
   note.time_s = incident.time_s;
   note.cause = incident.cause;
@@ -138,10 +139,7 @@ void DrawIncident(const Incident& incident, const HandModel& hand, double last_s
   note.drop_distance = incident.parameters.control.drop_distance;
   for (const ContactEnd& end : incident.ends)
     note.ends.push_back({end.finger, end.time_s, end.lifted});
-  PlotOptions options;
-  options.last_s = last_s;
-  options.object_name = incident.object;
-  PlotIncident(frames, incident.events, note, hand, options, path);
+  return input;
 }
 
 }  // namespace regrasp

@@ -8,9 +8,10 @@
 
 #include "core/journal/provenance.h"
 #include "daemon/output/files.h"
+#include "daemon/output/incident.h"
 #include "daemon/output/output_file.h"
 #include "daemon/requests/handlers.h"
-#include "snapshots/snapshots.h"
+#include "snapshots/plots.h"
 
 namespace regrasp::handlers {
 namespace {
@@ -23,9 +24,9 @@ struct Job {
   std::filesystem::path directory;
   std::vector<std::shared_ptr<const Frame>> frames;
   std::vector<Event> events;
-  std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;  ///< comparison
-  std::shared_ptr<const Incident> incident;                             ///< incident
-  std::shared_ptr<const FeltSurface> felt;                              ///< contacts, or null
+  std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;
+  std::shared_ptr<const Incident> incident;  ///< null: the picture is of something else
+  std::shared_ptr<const FeltSurface> felt;   ///< may be null
   HandModel hand;
   std::shared_ptr<const ObjectModel> object;
   PlotOptions options;
@@ -42,33 +43,21 @@ std::vector<Frame> Copy(const std::vector<std::shared_ptr<const Frame>>& frames)
   return copy;
 }
 
-/// Figure 2: a curve per exploration, named by its criterion; numbered when that does not tell them
-/// apart.
-void DrawComparison(const Job& job, const std::string& path) {
-  std::vector<std::vector<Frame>> frames;
-  std::vector<LabelledRun> runs;
-  for (const auto& exploration : job.explorations) frames.push_back(Copy(exploration));
-  for (const auto& run : frames)
-    runs.push_back({std::string(Name(run.back().job.explore.criterion)), run});
-  if (std::ranges::all_of(runs, [&](const auto& r) { return r.label == runs[0].label; }))
-    for (std::size_t i = 0; i < runs.size(); ++i) runs[i].label += fmt::format(" ({})", i + 1);
-  PlotQualityComparison(runs, job.hand, job.options, path);
-}
-
 void DrawInto(const Job& job, const std::string& path) {
-  if (job.name == "incident")
-    return DrawIncident(*job.incident, job.hand, job.options.last_s, path);
-  const std::vector<Frame> history = Copy(job.frames);
-  if (job.name == "comparison")
-    DrawComparison(job, path);
-  else if (job.name == "contacts")
-    PlotContacts(history, job.hand, *job.object, job.options, path, job.felt.get());
-  else if (job.name == "gait")
-    PlotGait(history, job.events, job.hand, job.options, path);
-  else if (job.name == "scene")
-    PlotScene(history.back(), job.hand, *job.object, job.options, path);
-  else
-    PlotQuality(history, job.events, job.hand, job.options, path);
+  PlotInput input;
+  if (job.incident) {
+    input = PictureOf(*job.incident, job.hand);
+  } else {
+    input.frames = Copy(job.frames);
+    input.events = job.events;
+    input.felt = job.felt;
+    for (const auto& exploration : job.explorations)
+      input.explorations.push_back(Copy(exploration));
+    input.hand = job.hand;
+  }
+  input.object = *job.object;
+  input.options = job.options;
+  DrawPlot(job.name, input, path);
 }
 
 /// Leaves room for one more: the oldest of those that nobody gave a name to go.
@@ -110,6 +99,7 @@ void Draw(Job* job) {
 Outcome Plot(Service& service, const Params& params, Client&) {
   const auto job = std::make_shared<Job>();
   job->name = params.String("name");
+  const PlotOf of = FindPlot(job->name)->of;
   job->directory = service.config().output_dir;
   job->most = service.config().budgets.pictures;
   job->overwrite = params.Bool("overwrite", false);
@@ -133,25 +123,27 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->options.changed = ChangedText(service.accepted.parameters, service.journal().config.model);
   job->options.object_name = service.accepted.object->name;
   job->frames = service.history().Frames(job->options.last_s);
-  if (job->name == "scene") {
+  if (of == PlotOf::kNewestFrame) {
     job->frames = {std::make_shared<const Frame>(service.newest().frame)};
     job->options.last_s = 0;
   }
-  if (job->name == "incident") {
+  if (of == PlotOf::kIncident) {
     job->incident = service.incident();
     if (!job->incident)
       throw RpcException(ErrorCode::kNotFound,
                          "no incident: nothing was dropped since this daemon started",
                          "regrasp plot quality");
     job->frames = job->incident->frames;
+    job->options.changed = ChangedText(job->incident->parameters, service.journal().config.model);
+    job->options.object_name = job->incident->object;
   }
   if (job->frames.empty())
     throw RpcException(ErrorCode::kBadState, "nothing has happened yet", "regrasp grasp");
-  if (job->name == "comparison") {
+  if (of == PlotOf::kExplorations) {
     job->explorations = service.history().Explorations();
     if (job->explorations.size() < History::kExplorations)
       throw RpcException(ErrorCode::kBadState,
-                         fmt::format("a comparison shows the last {} explorations, there are {}",
+                         fmt::format("a {} shows the last {} explorations, there are {}", job->name,
                                      History::kExplorations, job->explorations.size()),
                          "regrasp explore ring --wait, then another with --criterion combined");
     job->frames = job->explorations.back();
@@ -182,7 +174,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   Outcome outcome;
   outcome.begin = draw;
   // What was felt is the control thread's; a session that has faulted is not asked any more.
-  if (job->name == "contacts" && service.newest().frame.state != SessionState::kFaulted)
+  if (of == PlotOf::kFeltSurface && service.newest().frame.state != SessionState::kFaulted)
     outcome.begin = [&service, job, draw](Done done) {
       service.Mark([job, draw, done](const JournalNews& mark) {
         job->felt = mark.felt;

@@ -10,6 +10,7 @@
 #include "daemon/output/recorder.h"
 #include "daemon/requests/service.h"
 #include "daemon/wire/frame_json.h"
+#include "snapshots/plots.h"
 
 namespace regrasp {
 namespace {
@@ -203,8 +204,9 @@ void Service::DrawIncidentLater(std::shared_ptr<const Incident> incident,
                                 std::filesystem::path picture) {
   const auto draw = [incident, picture, hand = hand(), keep = config_.budgets.incidents] {
     try {
-      WriteOutput(picture, Draft::Existing::kReplace,
-                  [&](const std::string& draft) { DrawIncident(*incident, hand, 0, draft); });
+      WriteOutput(picture, Draft::Existing::kReplace, [&](const std::string& draft) {
+        DrawPlot("incident", PictureOf(*incident, hand), draft);
+      });
       PruneIncidents(picture.parent_path(), keep);
     } catch (const std::exception& e) {
       spdlog::error("no picture of the incident: {}", e.what());

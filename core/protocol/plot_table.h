@@ -1,0 +1,50 @@
+#pragma once
+
+/// The pictures of `plot`: a row for each, its drawing in snapshots/plot_NAME.cc. The wire, the
+/// command line with its help and completion, the daemon and run files follow from the row.
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace regrasp {
+
+/// What a picture is drawn of.
+enum class PlotOf {
+  kHistory,       ///< frames and events
+  kFeltSurface,   ///< these, and the object's surface as felt
+  kNewestFrame,   ///< one frame
+  kExplorations,  ///< the last explorations
+  kIncident,      ///< what led to the last drop; a run file has none
+};
+
+/// ROW(name on the wire, function that draws: declared in snapshots/plots.h, a PlotOf).
+#define REGRASP_PLOTS(ROW)                       \
+  ROW(comparison, DrawComparison, kExplorations) \
+  ROW(contacts, DrawContacts, kFeltSurface)      \
+  ROW(gait, DrawGait, kHistory)                  \
+  ROW(incident, DrawIncident, kIncident)         \
+  ROW(quality, DrawQuality, kHistory)            \
+  ROW(scene, DrawScene, kNewestFrame)
+
+struct PlotRow {
+  std::string_view name;
+  PlotOf of;
+};
+#define REGRASP_ROW(name, Draw, of) PlotRow{#name, PlotOf::of},
+inline constexpr auto kPlotTable = std::to_array<PlotRow>({REGRASP_PLOTS(REGRASP_ROW)});
+#undef REGRASP_ROW
+
+inline constexpr auto kPlotNames = [] {
+  std::array<std::string_view, kPlotTable.size()> names;
+  std::ranges::transform(kPlotTable, names.begin(), &PlotRow::name);
+  return names;
+}();
+
+/// Null where there is no such picture.
+constexpr const PlotRow* FindPlot(std::string_view name) {
+  const auto row = std::ranges::find(kPlotTable, name, &PlotRow::name);
+  return row == kPlotTable.end() ? nullptr : &*row;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,319 @@
+#include "snapshots/plots.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <thread>
+
+#include "snapshots/timeline.h"
+#include "tests/unit/snapshots/pixels.h"
+#include "tests/unit/snapshots/synthetic_run.h"
+
+namespace regrasp {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this test, removed at its end.
+class Snapshots : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(::testing::TempDir()) / (std::string("regrasp_snapshots_") + info->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string File(std::string_view name, const std::string& suffix = "") const {
+    return (folder_ / name).string() + suffix;
+  }
+
+  const HandModel hand_ = SyntheticHand();
+  const std::vector<Frame> run_ = SyntheticRun(6);
+  const std::vector<Event> events_ = {{1000, EventKind::kContactMade, 0, 0, 0, "contact"},
+                                      {2500, EventKind::kPush, -1, 0, 0, "push"}};
+  const ObjectModel object_;
+  fs::path folder_;
+};
+
+/// A drop at the end of the history; the last finger let go half a second before.
+IncidentNote NoteOf(std::span<const Frame> history) {
+  IncidentNote note;
+  if (!history.empty()) note.tick = history.back().tick;
+  note.time_s = 1e-3 * static_cast<double>(note.tick);
+  note.cause = "Dropped while holding: a push, then three lost its contact first.";
+  note.margin_limit = 0.1;
+  note.drop_distance = 0.03;
+  note.ends = {{2, note.time_s - 0.5, false}};
+  return note;
+}
+
+/// A history, or its newest frame, as every picture takes it.
+PlotInput InputOf(std::span<const Frame> history, const PlotOptions& options = {}) {
+  PlotInput input;
+  input.frames.assign(history.begin(), history.end());
+  input.events = {{1000, EventKind::kContactMade, 0, 0, 0, "contact"},
+                  {2500, EventKind::kPush, -1, 0, 0, "push"}};
+  input.explorations = {input.frames, input.frames};
+  input.incident = NoteOf(history);
+  input.hand = SyntheticHand();
+  input.options = options;
+  return input;
+}
+
+void Draw(const PlotRow& plot, std::span<const Frame> history, const PlotOptions& options,
+          const std::string& path) {
+  DrawPlot(plot.name, InputOf(history, options), path);
+}
+
+std::string ErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string Bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_F(Snapshots, EveryPictureIsWrittenInTheRequestedSizeAndFormat) {
+  for (const PlotRow& plot : kPlotTable) {
+    for (const auto& [width, height, suffix] :
+         {std::tuple{1600, 1000, ".png"}, std::tuple{800, 600, ".jpg"},
+          std::tuple{401, 303, ".PNG"}}) {
+      const std::string path = File(plot.name, suffix);
+      PlotOptions options;
+      options.width = width;
+      options.height = height;
+      Draw(plot, run_, options, path);
+      const cv::Mat picture = cv::imread(path);
+      EXPECT_EQ(picture.size(), cv::Size(width, height)) << path;
+    }
+    EXPECT_EQ(Bytes(File(plot.name, ".png")).substr(1, 3), "PNG");
+    EXPECT_EQ(Bytes(File(plot.name, ".jpg")).substr(0, 2),
+              "\xff\xd8");  // JPEG's start of image
+  }
+}
+
+TEST_F(Snapshots, SameInputGivesTheSameBytesFromAnyThread) {
+  for (const PlotRow& plot : kPlotTable) {
+    PlotOptions options;
+    options.width = 480;
+    options.height = 300;
+    Draw(plot, run_, options, File(plot.name, "1.png"));
+    std::array<std::thread, 2> threads;
+    for (int i = 0; i < 2; ++i)
+      threads[i] = std::thread(
+          [&, i] { Draw(plot, run_, options, File(plot.name, std::to_string(i + 2) + ".png")); });
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(Bytes(File(plot.name, "1.png")), Bytes(File(plot.name, "2.png"))) << plot.name;
+    EXPECT_EQ(Bytes(File(plot.name, "1.png")), Bytes(File(plot.name, "3.png"))) << plot.name;
+  }
+}
+
+TEST_F(Snapshots, EmptyHistoryIsRefusedByPathAndCause) {
+  for (const PlotRow& plot : kPlotTable) {
+    const std::string path = File(plot.name, ".png");
+    const std::string error = ErrorOf([&] { Draw(plot, {}, {}, path); });
+    EXPECT_NE(error.find(path), std::string::npos) << error;
+    EXPECT_NE(error.find("history is empty"), std::string::npos) << error;
+    EXPECT_FALSE(fs::exists(path));
+  }
+  EXPECT_NE(
+      ErrorOf([&] { PlotQualityComparison({}, hand_, {}, File("none.png")); }).find("no runs"),
+      std::string::npos);
+}
+
+TEST_F(Snapshots, SceneOfAnotherHandIsRefused) {
+  const std::string error =
+      ErrorOf([&] { PlotScene(Frame(), hand_, object_, {}, File("scene.png")); });
+  EXPECT_NE(error.find("0 joint angles"), std::string::npos) << error;
+  EXPECT_NE(error.find(File("scene.png")), std::string::npos) << error;
+}
+
+TEST_F(Snapshots, APictureInMemoryIsThatOfTheFile) {
+  PlotOptions options;
+  options.width = 640;
+  options.height = 400;
+  PlotScene(run_.back(), hand_, object_, options, File("scene.png"));
+  PlotQuality(run_, events_, hand_, options, File("quality.png"));
+  for (const auto& [pixels, name] :
+       {std::pair{ScenePixels(run_.back(), hand_, object_, options), "scene.png"},
+        std::pair{QualityPixels(run_, events_, hand_, options), "quality.png"}}) {
+    const cv::Mat picture = cv::imread(File(name));
+    ASSERT_EQ(pixels.size(), picture.total() * picture.elemSize());
+    EXPECT_TRUE(std::equal(pixels.begin(), pixels.end(), picture.data)) << name;
+  }
+}
+
+TEST_F(Snapshots, SceneWithADroppedObjectStillShowsTheHandAtItsSize) {
+  const auto drawn = [&](const Frame& frame) {
+    PlotScene(frame, hand_, object_, {}, File("scene.png"));
+    const cv::Mat picture =
+        cv::imread(File("scene.png"))(cv::Rect(30, 240, 640, 650));  // inside the left view
+    return cv::countNonZero(picture.reshape(1) != 255) / 3.0 / (640 * 650);
+  };
+  Frame frame = run_.back();
+  const double held = drawn(frame);
+  EXPECT_GT(held, 0.1);
+  for (const Vector3d& far :
+       {Vector3d(0, 0, -100), Vector3d(0, -5, 0), Vector3d(std::nan(""), 0, 0)}) {
+    frame.p_WO = far;
+    EXPECT_GT(drawn(frame), 0.5 * held) << far.transpose();
+  }
+  frame.q[0] = std::nan("");
+  EXPECT_NE(ErrorOf([&] { drawn(frame); }).find("not finite"), std::string::npos);
+}
+
+TEST_F(Snapshots, ContactsWithoutAHeldObjectAreRefused) {
+  std::vector<Frame> idle = run_;
+  for (Frame& frame : idle) frame.state = SessionState::kIdle;
+  const std::string error = ErrorOf([&] { PlotContacts(idle, hand_, object_, {}, File("c.png")); });
+  EXPECT_NE(error.find("no finger held the object"), std::string::npos) << error;
+}
+
+TEST_F(Snapshots, UnwritablePathUnknownSuffixAndBadSizeAreRefused) {
+  for (const PlotRow& plot : kPlotTable) {
+    const std::string missing = File("no_such_folder/x.png"), gif = File("x.gif"),
+                      good = File("x.png");
+    std::string error = ErrorOf([&] { Draw(plot, run_, {}, missing); });
+    EXPECT_NE(error.find(missing), std::string::npos) << error;
+    EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
+    error = ErrorOf([&] { Draw(plot, run_, {}, gif); });
+    EXPECT_NE(error.find(gif + ": unsupported suffix '.gif'"), std::string::npos) << error;
+    for (const auto& [width, height] :
+         {std::pair{0, 1000}, std::pair{1600, 299}, std::pair{8001, 1000}}) {
+      PlotOptions options;
+      options.width = width;
+      options.height = height;
+      error = ErrorOf([&] { Draw(plot, run_, options, good); });
+      EXPECT_NE(error.find(good + ": picture size"), std::string::npos) << error;
+    }
+    EXPECT_FALSE(fs::exists(gif));
+    EXPECT_FALSE(fs::exists(good));
+  }
+}
+
+TEST_F(Snapshots, NumbersThatAreNotFiniteLeaveGapsAndNothingElse) {
+  std::vector<Frame> run = run_;
+  for (std::size_t i = 100; i < 120; ++i) {
+    run[i].fingers[0].true_manipulability = run[i].fingers[1].manipulability = std::nan("");
+    run[i].stability.active = std::nan("");
+    run[i].stability.load_margin = std::numeric_limits<double>::infinity();
+    run[i].fingers[2].p_WC = Vector3d::Constant(std::nan(""));
+  }
+  for (const PlotRow& plot : kPlotTable)
+    EXPECT_NO_THROW(Draw(plot, run, {}, File(plot.name, ".png"))) << plot.name;
+}
+
+TEST_F(Snapshots, AHistoryOfOneFrameCanBeDrawn) {
+  for (const PlotRow& plot : kPlotTable)
+    EXPECT_NO_THROW(Draw(plot, std::span(run_).last(1), {}, File(plot.name, ".png"))) << plot.name;
+}
+
+TEST_F(Snapshots, QualityShowsTheExploringFingerBold) {
+  PlotQuality(run_, events_, hand_, {}, File("q.png"));
+  const cv::Mat picture = cv::imread(File("q.png"));
+  // Inside the upper panel (150 .. 1310 px across); the legend lies to the right of it.
+  const cv::Rect plot(152, 206, 1150, 290);
+  const int explorer = Count(picture, LookOfFinger(kSyntheticExplorer).colour, plot);
+  // A third of 1160 px, 4 px wide, of which the two rims are anti-aliased: at least 2 px are pure.
+  EXPECT_GT(explorer, 1160 / 3 * 2);
+  for (int other : {0, 2})
+    EXPECT_LT(Count(picture, LookOfFinger(other).colour, plot), explorer / 2);
+}
+
+TEST_F(Snapshots, QualityWithoutExplorationHasNoBoldCurve) {
+  std::vector<Frame> run = run_;
+  for (Frame& frame : run) frame.exploration = {};
+  PlotQuality(run, {}, hand_, {}, File("q.png"));
+  EXPECT_LT(Count(cv::imread(File("q.png")), LookOfFinger(kSyntheticExplorer).colour,
+                  {152, 206, 1150, 290}),
+            200);
+}
+
+TEST_F(Snapshots, IncidentShowsTheForceOfEveryFingerAndWhoLetGo) {
+  std::vector<Frame> run = run_;
+  for (Frame& frame : run)
+    for (int f = 0; f < 3; ++f)
+      frame.fingers[f].true_force_W = -(0.3 + 0.4 * f) * frame.fingers[f].true_normal_W;
+  PlotOptions options;
+  options.last_s = 2;
+  PlotIncident(run, {}, NoteOf(run), hand_, options, File("i.png"));
+  const cv::Mat picture = cv::imread(File("i.png"));
+  // Below the strips, left of the legend.
+  const cv::Rect panels(152, 340, 1196, 570);
+  // A curve across 1200 px, 3 px wide, of which at least 1 px is pure; letters cover a part of it.
+  for (int f = 0; f < 3; ++f) EXPECT_GT(Count(picture, LookOfFinger(f).colour, panels), 800) << f;
+  EXPECT_GT(Count(picture, Tint(kVermillion, 0.72), panels), 1000);  // below the margin's limit
+
+  IncidentNote nobody = NoteOf(run);
+  nobody.ends.clear();
+  PlotIncident(run, {}, nobody, hand_, options, File("n.png"));
+  const auto vermillion = [&](const std::string& name) {
+    return Count(cv::imread(File(name)), LookOfFinger(2).colour, panels);
+  };
+  // The dashed line down the panels: 500 px, 60 % of it drawn, at least 1 px pure.
+  EXPECT_GT(vermillion("i.png"), vermillion("n.png") + 100);
+}
+
+TEST_F(Snapshots, ComparisonShowsBothRunsAndTheThreshold) {
+  std::vector<Frame> other = run_;
+  for (Frame& frame : other) frame.fingers[kSyntheticExplorer].true_manipulability *= 0.8;
+  const std::array<LabelledRun, 2> runs = {LabelledRun{"manipulability", run_},
+                                           LabelledRun{"combined", other}};
+  PlotQualityComparison(runs, hand_, {}, File("c.png"));
+  const cv::Mat picture = cv::imread(File("c.png"));
+  const cv::Rect upper(152, 118, 1150, 370), lower(152, 530, 1150, 370);
+  for (const cv::Rect& panel : {upper, lower})
+    EXPECT_GT(Count(picture, kVermillion, panel),
+              500);                              // solid, so at least about one pixel per column
+  EXPECT_GT(Count(picture, kBlue, upper), 200);  // dotted
+  EXPECT_GT(Count(picture, kGrey, lower), 300);  // dashed threshold
+}
+
+TEST_F(Snapshots, ContactsShowEveryFingerInItsColour) {
+  PlotContacts(run_, hand_, object_, {}, File("c.png"));
+  const cv::Mat picture = cv::imread(File("c.png"));
+  for (int f = 0; f < 3; ++f) {
+    const Colour near = LookOfFinger(f).colour, far = Tint(near, 0.62);
+    const cv::Rect plots(0, 90, 1350, 900);
+    EXPECT_GT(Count(picture, near, plots) + Count(picture, far, plots), 100) << f;
+  }
+}
+
+TEST_F(Snapshots, LastSecondsCutTheHistoryAndAResetBeginsANewOne) {
+  const auto late = Newest(run_, 1.0, "x");
+  EXPECT_NEAR(late.front().time_s, run_.back().time_s - 1, 1e-9);
+  EXPECT_EQ(&late.back(), &run_.back());
+  EXPECT_EQ(Newest(run_, 0, "x").size(), run_.size());
+  EXPECT_EQ(Newest(run_, 1e6, "x").size(), run_.size());
+  std::vector<Frame> twice = run_;
+  const auto second = SyntheticRun(2);
+  twice.insert(twice.end(), second.begin(), second.end());
+  EXPECT_EQ(Newest(twice, 0, "x").size(), second.size());
+}
+
+TEST_F(Snapshots, BandsTouchAndGapsStayOpen) {
+  const auto bands = Bands(run_, [](const Frame& frame) { return frame.exploration.finger; });
+  ASSERT_EQ(bands.size(), 1u);
+  EXPECT_EQ(bands[0].value, kSyntheticExplorer);
+  EXPECT_NEAR(bands[0].end_s - bands[0].begin_s, 2.0, 1e-9);  // a third of 6 s
+  const auto states = Bands(run_, [](const Frame& frame) { return static_cast<int>(frame.state); });
+  ASSERT_EQ(states.size(), 4u);
+  for (std::size_t i = 1; i < states.size(); ++i) EXPECT_EQ(states[i].begin_s, states[i - 1].end_s);
+}
+
+}  // namespace
+}  // namespace regrasp
