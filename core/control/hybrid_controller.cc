@@ -15,6 +15,59 @@ FingerPinv DampedPinv(const FingerJacobian& J, double lambda) {
   return J.transpose() * inverse;
 }
 
+/// Force on the fingertip of a reaching finger: a spring to its target, as strong as when sliding.
+Vector3d ReachForce(const FingerEstimate& finger, const FingerTask& task,
+                    const ControlParameters& parameters) {
+  Vector3d error = task.p_target_W - finger.p_WF;
+  const double reach = parameters.slide_force_limit / parameters.slide_stiffness;
+  if (error.norm() > reach) error *= reach / error.norm();
+  return parameters.slide_stiffness * error;
+}
+
+/// What the object feels of the force that a sliding finger is asked for: friction bounds the
+/// tangential part.
+Vector3d SlideForceOnObject(const FingerEstimate& finger, const FingerTask& task,
+                            const Vector3d& commanded, const ControlParameters& parameters) {
+  const Vector3d tangential = TangentPart(commanded, finger.normal_W);
+  const double drag = parameters.slide_friction_share * task.force;
+  const double t = tangential.norm();
+  return -task.force * finger.normal_W +
+         (t > drag ? Vector3d(tangential * (drag / t)) : tangential);
+}
+
+/// Springs to the resting posture and away from joint limits [N m].
+FingerVector PostureTorque(const HandModel& hand, const std::vector<int>& joints,
+                           const JointVector& q, const JointVector& q_rest,
+                           const ControlParameters& parameters) {
+  const int n = static_cast<int>(joints.size());
+  FingerVector posture(n);
+  for (int k = 0; k < n; ++k) {
+    const int j = joints[k];
+    const Joint& joint = hand.joints[j];
+    posture[k] = parameters.posture_stiffness * (q_rest[j] - q[j]);
+    const double below = joint.lower + parameters.limit_margin - q[j];
+    const double above = q[j] - (joint.upper - parameters.limit_margin);
+    if (below > 0) posture[k] += parameters.limit_stiffness * below;
+    if (above > 0) posture[k] -= parameters.limit_stiffness * above;
+  }
+  return posture;
+}
+
+/// Joint torques of a finger [N m] that is asked for the force `commanded` and whose contact moves
+/// with `v_ref` [m/s]; the posture acts in the null space of the force.
+FingerVector ForceTorque(const HandModel& hand, const std::vector<int>& joints,
+                         const FingerEstimate& finger, const FingerVector& posture,
+                         const Vector3d& commanded, const Vector3d& v_ref,
+                         const ControlParameters& parameters) {
+  const FingerPinv pinv = DampedPinv(finger.J, parameters.pinv_damping);
+  const FingerVector qdot_ref = pinv * v_ref;
+  const Vector3d along = finger.J * posture;
+  FingerVector tau = finger.J.transpose() * commanded + posture - pinv * along;
+  for (int k = 0; k < static_cast<int>(joints.size()); ++k)
+    tau[k] += hand.joints[joints[k]].damping * qdot_ref[k];
+  return tau;
+}
+
 }  // namespace
 
 HybridController::HybridController(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {
@@ -104,24 +157,16 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
         if (lost) {
           v_ref[i] -= parameters.reapproach_speed * f.normal_W;
         } else {
-          const Vector3d tangential = TangentPart(commanded_[i], f.normal_W);
-          const double drag = parameters.slide_friction_share * task.force;
-          const double t = tangential.norm();
-          const Vector3d on_object = -task.force * f.normal_W +
-                                     (t > drag ? Vector3d(tangential * (drag / t)) : tangential);
+          const Vector3d on_object = SlideForceOnObject(f, task, commanded_[i], parameters);
           carried_force += on_object;
           carried_torque += r.cross(on_object);
         }
         break;
       }
-      case FingerMode::kReach: {
-        Vector3d error = task.p_target_W - f.p_WF;
-        const double reach = parameters.slide_force_limit / parameters.slide_stiffness;
-        if (error.norm() > reach) error *= reach / error.norm();
-        commanded_[i] = parameters.slide_stiffness * error;
+      case FingerMode::kReach:
+        commanded_[i] = ReachForce(f, task, parameters);
         v_ref[i] = task.v_target_W;
         break;
-      }
     }
   }
 
@@ -140,30 +185,16 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
   }
 
   for (int i = 0; i < num_fingers; ++i) {
-    const FingerEstimate& f = estimate.fingers[i];
-    const FingerTask& task = tasks[i];
     const std::vector<int>& joints = hand_->fingers[i].joints;
     const int n = static_cast<int>(joints.size());
-    FingerVector tau = FingerVector::Zero(n);
-    if (task.mode == FingerMode::kPosture) {
+    FingerVector tau(n);
+    if (tasks[i].mode == FingerMode::kPosture) {
       for (int k = 0; k < n; ++k)
-        tau[k] = parameters.free_stiffness * (task.q_target[k] - estimate.q[joints[k]]);
+        tau[k] = parameters.free_stiffness * (tasks[i].q_target[k] - estimate.q[joints[k]]);
     } else {
-      const FingerPinv pinv = DampedPinv(f.J, parameters.pinv_damping);
-      FingerVector posture(n);
-      for (int k = 0; k < n; ++k) {
-        const Joint& joint = hand_->joints[joints[k]];
-        const double q = estimate.q[joints[k]];
-        posture[k] = parameters.posture_stiffness * (q_rest_[joints[k]] - q);
-        const double below = joint.lower + parameters.limit_margin - q;
-        const double above = q - (joint.upper - parameters.limit_margin);
-        if (below > 0) posture[k] += parameters.limit_stiffness * below;
-        if (above > 0) posture[k] -= parameters.limit_stiffness * above;
-      }
-      const FingerVector qdot_ref = pinv * v_ref[i];
-      const Vector3d along = f.J * posture;
-      tau = f.J.transpose() * commanded_[i] + posture - pinv * along;
-      for (int k = 0; k < n; ++k) tau[k] += hand_->joints[joints[k]].damping * qdot_ref[k];
+      tau = ForceTorque(*hand_, joints, estimate.fingers[i],
+                        PostureTorque(*hand_, joints, estimate.q, q_rest_, parameters),
+                        commanded_[i], v_ref[i], parameters);
     }
     for (int k = 0; k < n; ++k) torque_[joints[k]] += tau[k];
   }
