@@ -3,13 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "core/hand/urdf_file.h"
+#include "core/posture/finger_name.h"
 
 namespace regrasp {
 namespace {
@@ -184,40 +183,12 @@ class Guess {
     X_HR.translation() = -(X_HR.linear() * base);
   }
 
-  /// thumb, first, ... by a name of a link or joint; empty where it tells none. "ffmiddle" is of
-  /// the first finger: a beginning counts before a part, an early part before a later one.
-  static std::string NameIn(std::string name) {
-    struct Word {
-      const char* start;
-      const char* part;
-      const char* name;
-    };
-    static constexpr std::array<Word, 6> kWords = {{{"th", "thumb", "thumb"},
-                                                    {"ff", "index", "first"},
-                                                    {"mf", "middle", "middle"},
-                                                    {"rf", "ring", "ring"},
-                                                    {"lf", "pinky", "little"},
-                                                    {"lf", "little", "little"}}};
-    std::ranges::transform(name, name.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    std::string best;
-    std::size_t earliest = std::string::npos;
-    for (const Word& word : kWords) {
-      if (name.starts_with(word.start)) return word.name;
-      const std::size_t at = name.find(word.part);
-      if (at == std::string::npos || at >= earliest) continue;
-      earliest = at;
-      best = word.name;
-    }
-    return best;
-  }
-
   /// What the names of a chain agree on.
   std::string KnownName(const Chain& chain) const {
-    std::set<std::string> found = {NameIn(link(chain.tip).name)};
+    std::set<std::string> found = {FingerNameIn(link(chain.tip).name)};
     for (const int j : chain.joints) {
-      found.insert(NameIn(joint(j).name));
-      found.insert(NameIn(link(joint(j).child).name));
+      found.insert(FingerNameIn(joint(j).name));
+      found.insert(FingerNameIn(link(joint(j).child).name));
     }
     found.erase("");
     return found.size() == 1 ? *found.begin() : "";

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/posture/finger_name.h"
 #include "core/posture/grasp_search.h"
 #include "core/posture/hand_guess.h"
 #include "core/posture/scenario_text.h"
@@ -90,6 +91,48 @@ TEST_F(PostureTest, NamesFingersByWhatTheFileCallsThem) {
   std::vector<std::string> names;
   for (const auto& finger : guess.layout.fingers) names.push_back(finger.name);
   EXPECT_EQ(names, (std::vector<std::string>{"first", "middle", "ring", "little", "thumb"}));
+}
+
+TEST(FingerName, IsToldByPublishedNames) {
+  const std::map<std::string, std::vector<std::string>> names = {
+      {"thumb",
+       {"THJ5", "thbase", "thhub", "thtip", "thtip_joint", "rh_thmiddle", "th_proximal", "thj0",
+        "thumb_temp_base", "thumb_fingertip", "right_hand_Thumb_Opposition", "R_thumb_MCP_joint1",
+        "rightThumbTip", "RThumb1"}},
+      {"first",
+       {"FFJ1", "ffmiddle", "lh_FFtip", "fftip", "if_mcp", "index_middle", "index_tip_head",
+        "right_hand_Index_Finger_Distal", "L_index_intermediate", "indexFinger2"}},
+      {"middle", {"MFJ4", "mfknuckle", "mf_tip", "middle_tip", "middle_middle"}},
+      {"ring", {"RFtip", "rfproximal", "ring_tip_head", "right_hand_ring_spread", "RINGa"}},
+      {"little", {"LFJ5", "lfmetacarpal", "right_hand_Pinky", "little_1", "pinkie"}},
+      {"", {"three_finger_2",
+            "thigh",
+            "path",
+            "other",
+            "width",
+            "the_palm",
+            "thread",
+            "thick",
+            "north_link",
+            "spring",
+            "bearing_2",
+            "string",
+            "wiring",
+            "offset",
+            "diff",
+            "lfo",
+            "iffy",
+            "finger",
+            "finger_1",
+            "fingertip_2",
+            "joint_0.0",
+            "link_15.0_tip",
+            "palm",
+            "",
+            "_",
+            "7"}}};
+  for (const auto& [finger, of_it] : names)
+    for (const std::string& name : of_it) EXPECT_EQ(FingerNameIn(name), finger) << name;
 }
 
 TEST_F(PostureTest, AFingertipOfBoxesIsTheRoundedEndOfTheFarthest) {
