@@ -17,14 +17,14 @@
 namespace regrasp {
 namespace {
 
-Stepper StepperFor(const std::string& word, const SessionConfig& session) {
-  if (word == "exact") return Stepper::kExact;
-  if (word == "fast") return Stepper::kFast;
-  const StepperChoice choice = ChooseStepper(session.model, session.world);
+StepperChoice StepperFor(const std::string& word, const SessionConfig& session) {
+  if (word != "auto")
+    return {word == "exact" ? Stepper::kExact : Stepper::kFast, "as the configuration says"};
+  StepperChoice choice = ChooseStepper(session.model, session.world);
   const bool fast = choice.stepper == Stepper::kFast;
   spdlog::log(fast ? spdlog::level::debug : spdlog::level::warn, "stepper {}: {}",
               fast ? "fast" : "exact", choice.reason);
-  return choice.stepper;
+  return choice;
 }
 
 ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
@@ -50,7 +50,9 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   session.model = LoadScenario(config.hand, config.object, service.search_path, service.load);
   session.seed = config.seed;
   session.noise = *NoisePreset(config.noise);
-  session.world.stepper = StepperFor(config.stepper, session);
+  StepperChoice choice = StepperFor(config.stepper, session);
+  session.world.stepper = choice.stepper;
+  service.stepper_reason = std::move(choice.reason);
   session.parameters.gravity_W = session.model.scenario.gravity_W;
   session.parameters = ParametersAfterReset(session.parameters, &session.model.object);
   auto parameters = config.parameters;

@@ -57,6 +57,9 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     line("run", fmt::format("hand {}, object {}, seed {}", Plain(At(s, "hand")),
                             Plain(At(s, "object")), Plain(At(s, "seed"))));
     const Json& noise = At(s, "noise");
+    // A daemon that is older does not say why.
+    if (const Json& reason = At(s, "stepper_reason"); reason.is_string())
+      line("stepper", fmt::format("{} ({})", Plain(At(s, "stepper")), Plain(reason)));
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
     const std::string changed = ChangedText(At(s, "changed_parameters"));
@@ -71,7 +74,7 @@ ExitCode Status(Context& context, const Invocation& invocation) {
                                At(s, "clients") == 1 ? "" : "s"));
     if (context.options().verbose) {
       line("hash", Plain(At(s, "state_hash")));
-      for (const char* key : {"speed", "stepper", "output_dir", "pid", "uptime_s", "socket"}) {
+      for (const char* key : {"speed", "output_dir", "pid", "uptime_s", "socket"}) {
         if (!At(s, key).is_null()) line(key, Plain(At(s, key)));
       }
     }

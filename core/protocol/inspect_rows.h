@@ -150,7 +150,8 @@ inline constexpr std::array kInspectRows = {
                false,
                "version, protocol, state, paused, clock (continuous, lockstep), "
                "advancing (time goes on now), tick, time_s, state_hash, real_time_factor, "
-               "speed, stepper, tick_p99_s, seed, hand, object, warnings, job, gait: {active, "
+               "speed, stepper, stepper_reason, tick_p99_s, seed, hand, object, warnings, job, "
+               "gait: {active, "
                "phase, finger, state, "
                "reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, "
                "incident (the last drop: "

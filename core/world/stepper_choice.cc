@@ -50,21 +50,26 @@ std::string Fall(const LoadedScenario& model, WorldConfig config) {
 }  // namespace
 
 StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& config) {
-  const Trial exact = Close(model, config, Stepper::kExact);
-  Trial fast = Close(model, config, Stepper::kFast);
-  if (fast.fault.empty()) fast.fault = Fall(model, config);
-  if (!fast.fault.empty())
-    return {exact.fault.empty() ? Stepper::kExact : Stepper::kFast,
-            exact.fault.empty() ? "the fast step failed: " + fast.fault
-                                : "both steps failed: " + fast.fault};
-  if (!exact.fault.empty()) return {Stepper::kFast, "the exact step failed: " + exact.fault};
   if (model.hand.num_joints() == 0) return {Stepper::kFast, "the hand has no joints"};
+  const Trial exact = Close(model, config, Stepper::kExact);
+  const Trial fast = Close(model, config, Stepper::kFast);
+  if (exact.fault.empty() && !fast.fault.empty())
+    return {Stepper::kExact, "failed at load: the fast step, closing the hand: " + fast.fault};
+  if (!exact.fault.empty())
+    return {Stepper::kFast, "failed at load: the exact step, closing the hand: " + exact.fault +
+                                (fast.fault.empty() ? "" : "; the fast one: " + fast.fault)};
+  const std::string fall = Fall(model, config);
+  if (!fall.empty())
+    return {Stepper::kExact, "failed at load: the fast step, 1 s of free motion: " + fall};
   const double moved = (exact.q - model.scenario.q_preshape).cwiseAbs().maxCoeff();
   const double apart = (exact.q - fast.q).cwiseAbs().maxCoeff();
   const bool agree = apart <= kAgreement * std::max(moved, kMotion);
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "the steps differ by %.2g rad in a motion of %.2g rad",
-                apart, moved);
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "%s at load: closing the hand, the steps differ by %.2g rad in a motion of %.2g "
+                "rad, %s %.0f %%%s",
+                agree ? "passed" : "failed", apart, moved, agree ? "within" : "more than",
+                100 * kAgreement, agree ? "; 1 s of free motion" : "");
   return {agree ? Stepper::kFast : Stepper::kExact, text.data()};
 }
 

@@ -37,6 +37,7 @@ Json StatusJson(Service& service) {
       {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
       {"stepper",
        service.config().control.session.world.stepper == Stepper::kFast ? "fast" : "exact"},
+      {"stepper_reason", service.config().stepper_reason},
       {"seed", frame.seed},
       {"hand", service.hand().name},
       {"object", service.accepted.object->name},

@@ -71,6 +71,7 @@ struct Budgets {
 struct ServiceConfig {
   Budgets budgets;
   ControlConfig control;
+  std::string stepper_reason;                      ///< why `control` has the stepper that it has
   std::vector<std::filesystem::path> search_path;  ///< for `reset {object}`
   LoadOptions load;                                ///< for `reset {object}`
   std::filesystem::path output_dir;                ///< for pictures

@@ -129,6 +129,7 @@ void Service::TakeIn(const JournalNews& news) {
       config_.control.session.world = journal_.config.world;  // a checkpoint brings its own
       config_.control.session.model.scenario = journal_.config.model.scenario;
       if (!news.start->restored) break;
+      config_.stepper_reason = "that of the checkpoint's run";
       accepted.parameters = news.start->parameters;
       accepted.noise = news.start->noise;
       accepted.seed = news.start->seed;

@@ -74,7 +74,11 @@ class Hand(Case):
         self.expect(0, "step", 9000, "--wait")
         status = self.json("status")
         self.assertEqual((status["state"], status["hand"]), ("holding", "mine"))
-        self.assertIn(status["stepper"], ("fast", "exact"))
+        # Why this stepper: tried at load, and told alike by everything that is asked.
+        self.assertEqual(status["stepper"], "fast")
+        self.assertRegex(status["stepper_reason"], "^passed at load: .* within 5 %; 1 s of free motion$")
+        self.assertIn(f"stepper    fast ({status['stepper_reason']})", self.expect(0, "status").stdout)
+        self.assertEqual(self.check(self.dir / "mine.toml")["stepper_reason"], status["stepper_reason"])
 
     def test_check_tells_what_a_file_says(self):
         told = self.check(self.write("three.urdf", hand(3, more="")), "-o", self.dir / "three.png")
@@ -83,7 +87,7 @@ class Hand(Case):
         self.assertEqual(len(told["joints"]), 9)
         self.assertIsNone(told["scenario"])
         self.assertIn(told["stepper"], ("fast", "exact"))
-        self.assertTrue(told["stepper_reason"])
+        self.assertRegex(told["stepper_reason"], "^(passed|failed) at load: ")
         warnings = "\n".join(told["warnings"])
         self.assertIn("<dynamics damping> is missing for 9 joints", warnings)
         self.assertIn("three fingers: none can leave", warnings)

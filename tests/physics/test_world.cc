@@ -659,6 +659,7 @@ TEST_P(BothSteppers, FaultsDoNotAddUp) {
 TEST(StepperChoice, TakesTheFastStepForAHandWhereBothAgree) {
   const StepperChoice choice = ChooseStepper(Shadow(), {});
   EXPECT_EQ(choice.stepper, Stepper::kFast) << choice.reason;
+  EXPECT_TRUE(choice.reason.starts_with("passed at load: closing the hand, ")) << choice.reason;
   EXPECT_EQ(ChooseStepper(Shadow(), {}).reason, choice.reason) << "deterministic";
   WorldConfig hinges;
   hinges.merge_universal = false;
@@ -677,6 +678,7 @@ TEST(StepperChoice, TakesTheExactStepWhereTheFastOneIsOff) {
   broken.contact_solver.max_sweeps = 0;  // contact forces stay zero: through the object
   const StepperChoice choice = ChooseStepper(Shadow(), broken);
   EXPECT_EQ(choice.stepper, Stepper::kExact) << choice.reason;
+  EXPECT_TRUE(choice.reason.starts_with("failed at load: closing the hand, ")) << choice.reason;
 }
 
 TEST(World, MalformedInputsAreFaults) {

@@ -110,10 +110,12 @@ TEST_F(Checkpoints, BringTheirStepperWithThemAndStatusTellsIt) {
   Start();
   client = Connect();
   EXPECT_EQ(client->Result("status")["stepper"], "exact");
+  EXPECT_EQ(client->Result("status")["stepper_reason"], "as the configuration says");
   EXPECT_EQ(Restore({{"name", "start"}})["state"], "done");
   for (const char* reset : {"", "reset"}) {  // later runs keep it
     if (*reset) client->Result(reset);
     EXPECT_EQ(client->Result("status")["stepper"], "fast") << reset;
+    EXPECT_EQ(client->Result("status")["stepper_reason"], "that of the checkpoint's run") << reset;
     EXPECT_EQ(client->Result("identity")["stepper"], "fast") << reset;
   }
 }
