@@ -158,8 +158,8 @@ std::vector<std::string> Warnings(const Loaded& loaded, int own_contacts) {
           finger.name, finger.joints.size()));
   if (loaded.model.hand.num_fingers() < 3)
     warnings.push_back(
-        "two fingers: `grasp` needs three contacts, so that the object cannot turn "
-        "about the line between them");
+        "two fingers: nothing keeps the object from turning about the line between them; none can "
+        "leave the grasp, so the hand does not explore or regrasp");
   if (loaded.model.hand.num_fingers() == 3)
     warnings.push_back(
         "three fingers: none can leave the grasp, so the hand holds and moves an "

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/session/few_fingers.h"
 #include "core/session/session_impl.h"
 
 namespace regrasp {
@@ -120,6 +121,8 @@ Verdict Session::Impl::Apply(const Command& command) {
   if (const auto method = JobMethodOf(command.type)) {
     const Verdict fit = CheckMeasure(parameters, *method, command.criterion);
     if (fit.kind != Verdict::Kind::kAllowed) return Refuse(command, fit);
+    const Verdict enough = CheckFingers(config.model.hand, parameters, command);
+    if (enough.kind != Verdict::Kind::kAllowed) return Refuse(command, enough);
     return StartActivity(command, *method);
   }
   switch (command.type) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "core/session/few_fingers.h"
 #include "daemon/requests/handlers.h"
 
 namespace regrasp {
@@ -93,6 +94,9 @@ Outcome Start(Service& service, const Params& params, Client&) {
   Command command = ReadRequest(service, kJobTable[row], params);
   service.CheckAllowed(command.type);
   service.CheckMeasure(service.accepted.parameters, kJobTable[row].id, command.criterion);
+  const Verdict enough = CheckFingers(service.hand(), service.accepted.parameters, command);
+  if (enough.kind != Verdict::Kind::kAllowed)
+    throw RpcException(ErrorCode::kBadState, enough.reason, enough.hint);
   JobRecord& job = service.jobs().Add(kJobTable[row].id);
   const std::int64_t id = job.id;
   job.explore.finger = command.finger;

@@ -77,7 +77,7 @@ class Hand(Case):
         # Why this stepper: tried at load, and told alike by everything that is asked.
         self.assertEqual(status["stepper"], "fast")
         self.assertRegex(status["stepper_reason"], "^passed at load: .* within 5 %; 1 s of free motion$")
-        self.assertIn(f"stepper    fast ({status['stepper_reason']})", self.expect(0, "status").stdout)
+        self.assertIn(f"stepper     fast ({status['stepper_reason']})", self.expect(0, "status").stdout)
         self.assertEqual(self.check(self.dir / "mine.toml")["stepper_reason"], status["stepper_reason"])
 
     def test_check_tells_what_a_file_says(self):
@@ -127,6 +127,29 @@ class Hand(Case):
         error = self.refused(1, "-q", "hand", "new", self.write("far.urdf", far), "-o", self.dir / "far.toml")
         self.assertIn("no posture found in which 3 fingertips touch a ball of 50 mm", error)
         self.assertFalse((self.dir / "far.toml").exists())
+
+    def test_what_two_or_three_fingers_cannot_do_is_said_before_it_is_tried(self):
+        for n in (3, 2):
+            with self.subTest(fingers=n):
+                self.expect(0, "-q", "hand", "new", self.write(f"few{n}.urdf", hand(n)), "-o", self.dir / f"few{n}.toml")
+                self.addCleanup(self.regrasp, "down")
+                self.expect(0, "up", "--hand", self.dir / f"few{n}.toml", "--clock", "lockstep")
+                self.expect(0, "grasp", "--wait")
+                tick = self.json("status")["tick"]
+                error = self.refused(5, "explore", "finger1")
+                self.assertIn("exploring needs a hand of four fingers or more", error)
+                self.assertIn("regrasp move", error)
+                for turn in (["--angle", "21"], ["--turns", "-1"], ["--continuous"]):
+                    error = self.refused(5, "rotate", *turn)
+                    self.assertIn("turning by more than gait.step_rad needs a hand of four fingers or more", error)
+                status = self.json("status")
+                self.assertEqual((status["state"], status["tick"]), ("holding", tick), "nothing was tried")
+                self.assertEqual(len(self.json("job", "list")["jobs"]), 1)
+                # What needs no regrasp goes, and within gait.step_rad that is a turn, too.
+                if n == 3:
+                    self.expect(0, "rotate", "--angle", "15", "--wait")
+                    self.assertEqual(self.json("job", "show", "2")["regrasps"], 0)
+                self.expect(0, "down")
 
     def test_usage(self):
         four = self.write("four.urdf", hand(4))

@@ -1,0 +1,23 @@
+#include "core/session/few_fingers.h"
+
+#include <cmath>
+
+namespace regrasp {
+
+Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command) {
+  constexpr int kEnough = 4;
+  if (hand.num_fingers() >= kEnough) return {};
+  if (command.type == CommandType::kExplore)
+    return {Verdict::Kind::kBadState,
+            "exploring needs a hand of four fingers or more: this one has fewer, and without the "
+            "one that explores the others do not hold the object",
+            "regrasp move --turn 0,0,-10 --wait"};
+  if (command.type != CommandType::kRotate) return {};
+  if (!command.continuous && std::abs(command.angle_rad) <= parameters.gait.step_rad) return {};
+  return {Verdict::Kind::kBadState,
+          "turning by more than gait.step_rad needs a hand of four fingers or more: this one has "
+          "fewer, and without the one that regrasps the others do not hold the object",
+          "regrasp rotate --angle 20 --wait, a turn without a regrasp"};
+}
+
+}  // namespace regrasp

@@ -1,0 +1,17 @@
+#pragma once
+
+/// What a hand of two or three fingers cannot do.
+
+#include "core/hand/hand_model.h"
+#include "core/session/command.h"
+#include "core/session/parameters.h"
+#include "core/session/session.h"
+
+namespace regrasp {
+
+/// Refuses what needs a finger to leave where the others would be fewer than three: two contacts
+/// do not hold an object that turns about the line between them. That is every exploration, and a
+/// rotation by more than one motion of the gait (gait.step_rad).
+Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command);
+
+}  // namespace regrasp
