@@ -178,7 +178,8 @@ double Clearance(const HandModel& hand, const KinematicsData& data, const Vector
     const bool tip =
         of_a >= 0 && static_cast<int>(a) == hand.fingers[static_cast<std::size_t>(of_a)].tip_link;
     for (const Shape& shape : hand.links[a].shapes) {
-      if (!tip)
+      const bool touches = tip && &shape == &hand.links[a].shapes.front();
+      if (!touches)
         gap = std::min(gap, BallGap(shape, data.X_WL[a], p_WO, radius) - (a == 0 ? kPalmGap : 0));
       if (of_a < 0) continue;
       const Shape sa = AsCapsule(shape);

@@ -10,12 +10,16 @@
 
 namespace regrasp {
 
+/// Leaves 9 mm to a ball 18 mm larger across [m].
+inline constexpr double kOpenGap = 0.018;
+
 /// What is grasped, and how contacts are judged.
 struct BallTask {
   double radius = 0.025;                                    ///< [m]
   Vector3d weight = 0.08 * 9.81 * Vector3d(0, 0.42, 0.91);  ///< of the ball, in W [N]
   double friction = 0.5;                                    ///< that is counted on
   double max_force = 4.0;                                   ///< of a finger [N]
+  double gap = kOpenGap;  ///< of the open hand's fingertips to the ball [m]
 };
 
 struct BallGrasp {
@@ -47,8 +51,8 @@ bool TouchBall(const HandModel& hand, double radius, const Vector3d& p_WO, Joint
 bool TouchAt(const HandModel& hand, double radius, const Vector3d& p_WO, int finger,
              const Vector3d& outward, JointVector* q);
 
-/// Smallest gap of links of different fingers, and of links that are not tips (and the palm) to the
-/// ball [m].
+/// Smallest gap of links of different fingers, and of all shapes but the rounded tips (and the
+/// palm) to the ball [m].
 double Clearance(const HandModel& hand, const KinematicsData& data, const Vector3d& p_WO,
                  double radius);
 

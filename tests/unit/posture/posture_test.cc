@@ -304,5 +304,24 @@ TEST(ShippedHands, HaveAGraspThatEveryFingerMayLeave) {
   }
 }
 
+TEST_F(PostureTest, WhatIsBehindARoundedTipMustBeClearOfTheBall) {
+  const fs::path file = Write("hand.urdf", RadialHandUrdf(4));
+  const HandModel bare = LoadHand(file, GuessHand(file).layout);
+  KinematicsData data;
+  ForwardKinematics(bare, JointVector::Zero(bare.num_joints()), &data);
+  // A ball that touches the first tip from the side, and is far from all else.
+  const Finger& finger = bare.fingers[0];
+  const Vector3d p_WF = FingertipCentre(bare, data, 0);
+  const Vector3d p_WO = p_WF + (0.02 + finger.tip_radius) * Vector3d::UnitX();
+  HandModel thick = bare;
+  Shape box;
+  box.kind = Shape::Kind::kBox;
+  box.half_extents.setConstant(finger.tip_radius + 1e-3);
+  box.X_LB.translation() = finger.p_LF;
+  thick.links[static_cast<std::size_t>(finger.tip_link)].shapes.push_back(box);
+  EXPECT_GT(Clearance(bare, data, p_WO, 0.02), 0);
+  EXPECT_NEAR(Clearance(thick, data, p_WO, 0.02), -1e-3, 1e-6) << "the box stands out by 1 mm";
+}
+
 }  // namespace
 }  // namespace regrasp
