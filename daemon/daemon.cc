@@ -137,7 +137,8 @@ std::vector<std::string> CheckModels(const DaemonConfig& config) {
   for (const ModelWarning& warning : session.config().model.report.warnings)
     warnings.push_back(warning.Line());
   const auto overlap = OverlapText(session.world().start_overlap(), session.config().model.hand);
-  if (overlap.front() != 0) warnings.push_back(overlap.data() + std::string("; grasp will refuse"));
+  if (overlap.front() != 0)
+    warnings.push_back(overlap.data() + std::string("; grasp will refuse: ") + kFitsObject);
   return warnings;
 }
 

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "cli/hand/hand_command.h"
+#include "cli/hand/lay_object.h"
 #include "cli/hand/trial.h"
 #include "core/common/finger_set.h"
 #include "core/files/draft.h"
@@ -28,6 +29,9 @@ namespace fs = std::filesystem;
 constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small hands use
 constexpr double kOpposes = 0.05;   // [N]: a load margin that counts
 constexpr double kHold = 5;         // [s] of a trial
+constexpr int kTrials = 3;          // seeds with which an object that is no ball must be held
+constexpr std::size_t kWays = 8;    // to lay it into a grasp, that are tried
+constexpr double kLeastBall = 30;   // that stands for it [mm]
 
 /// Progress on a terminal's last line, or a line per tenth elsewhere.
 class Progress {
@@ -76,6 +80,16 @@ struct Found {
 
   bool any() const { return !model.hand.links.empty(); }
   bool Good() const { return any() && trial.held && way.stuck < 0; }
+  void Try(std::uint64_t seed, int times) {
+    choice = ChooseStepper(model, {});
+    trial = TryToHold(model, choice.stepper, seed, kHold);
+    for (int k = 1; k < times && trial.held; ++k) {
+      const HoldTrial next =
+          TryToHold(model, choice.stepper, seed + static_cast<unsigned>(k), kHold);
+      trial = {next.held, next.end, std::max(trial.moved_m, next.moved_m),
+               std::min(trial.margin_n, next.margin_n)};
+    }
+  }
   bool Better(const Found& other) const {
     if (!any() || !other.any()) return any();
     const auto rank = [](const Found& f) {
@@ -90,11 +104,11 @@ class Maker {
   explicit Maker(const Options& options)
       : options_(options),
         out_(options.Text("--output")),
+        object_(options.Text("--object")),
         size_mm_(options.Number("--object-size", 50, 20, 150)),
         tilt_(options.Number("--tilt", 65, 0, 180) * M_PI / 180),
         progress_(options.Has("--quiet")) {
     search_.seed = static_cast<std::uint64_t>(options.Number("--seed", 1, 0, 9e15));
-    search_.task.radius = 0.5e-3 * size_mm_;
     gravity_W_ = 9.81 * Vector3d(0, std::cos(tilt_), std::sin(tilt_));
     search_.task.weight = 0.08 * gravity_W_;
     search_.progress = [this](double done, double) {
@@ -105,7 +119,20 @@ class Maker {
   Answer Make() {
     CheckOutput();
     Read();
-    Search();
+    if (!object_.empty()) ReadObject();
+    for (int out = 0; out <= 2; ++out)
+      for (const double size_mm : sizes_mm_) Search(out, size_mm);
+    hand_ = best_.any() ? best_.model.hand : all_;
+    for (const HandLayout::Finger& finger : whole_.fingers)
+      if (std::ranges::none_of(guess_.layout.fingers,
+                               [&](const auto& kept) { return kept.name == finger.name; }))
+        left_out_.push_back(finger.name);
+    if (!best_.any() && touched_)
+      throw Failure(
+          ExitCode::kFailed,
+          fmt::format("{}: however it is turned, {} begins inside a link of the open hand",
+                      options_.file, object_),
+          "regrasp object show FILE tells its size; a smaller object");
     if (!best_.any())
       throw Failure(ExitCode::kFailed,
                     fmt::format("{}: no posture found in which {} fingertips touch a ball of {:g} "
@@ -143,34 +170,40 @@ class Maker {
     guess_.layout.armature = kArmature;
     hand_ = LoadHand(urdf_, guess_.layout, options_.load(), &report_);
     hand_.name = out_.stem().string();
+    whole_ = guess_.layout;
+    all_ = hand_;
   }
 
-  /// With every finger; where they cannot all touch and hold, with one left out (the best choice of
-  /// it), else two (the first that holds).
-  void Search() {
-    const HandLayout whole = guess_.layout;
-    const HandModel all = hand_;
-    const int n = all.num_fingers();
-    for (int out = 0; out <= 2 && !best_.Good() && (out == 0 || n - out >= 3); ++out)
-      for (int a = 0; a < n; ++a)
-        for (int b = a; b < n; ++b) {
-          if (out == 2 && best_.Good()) break;
-          if (out == 0 ? a + b > 0 : (b == a) != (out == 1)) continue;
-          without_ = out == 0 ? "" : " without " + all.fingers[static_cast<std::size_t>(a)].name;
-          if (out == 2) without_ += ", " + all.fingers[static_cast<std::size_t>(b)].name;
-          const HandLayout layout = Without(all, whole, out == 0 ? FingerSet{} : FingerSet{a, b});
-          hand_ = LoadHand(urdf_, layout, options_.load());
-          hand_.name = out_.stem().string();
-          const Found found = Choose(FindGrasps(hand_, search_));
-          if (!found.Better(best_)) continue;
-          best_ = found;
-          guess_.layout = layout;
-        }
-    hand_ = best_.any() ? best_.model.hand : all;
-    for (const HandLayout::Finger& finger : whole.fingers)
-      if (std::ranges::none_of(guess_.layout.fingers,
-                               [&](const auto& kept) { return kept.name == finger.name; }))
-        left_out_.push_back(finger.name);
+  void ReadObject() {
+    body_ = LoadObject(object_, ModelSearchPath(), options_.load());
+    box_ = BoxOf(body_);
+    search_.task.weight = body_.mass * gravity_W_;
+    if (options_.Has("--object-size")) return;
+    sizes_mm_.clear();
+    for (const double size : BallsFor(box_, 1e-3 * kLeastBall)) sizes_mm_.push_back(1e3 * size);
+  }
+
+  /// With `out` fingers left out, while nothing good was found: one, the best choice of it; two,
+  /// the first that holds.
+  void Search(int out, double size_mm) {
+    const int n = all_.num_fingers();
+    if (best_.Good() || (out > 0 && n - out < 3)) return;
+    search_.task.radius = 0.5e-3 * size_mm;
+    for (int a = 0; a < n; ++a)
+      for (int b = a; b < n; ++b) {
+        if (out == 2 && best_.Good()) return;
+        if (out == 0 ? a + b > 0 : (b == a) != (out == 1)) continue;
+        without_ = out == 0 ? "" : " without " + all_.fingers[static_cast<std::size_t>(a)].name;
+        if (out == 2) without_ += ", " + all_.fingers[static_cast<std::size_t>(b)].name;
+        const HandLayout layout = Without(all_, whole_, out == 0 ? FingerSet{} : FingerSet{a, b});
+        hand_ = LoadHand(urdf_, layout, options_.load());
+        hand_.name = out_.stem().string();
+        const Found found = Choose(FindGrasps(hand_, search_), size_mm);
+        if (!found.Better(best_)) continue;
+        best_ = found;
+        size_mm_ = size_mm;
+        guess_.layout = layout;
+      }
   }
 
   /// The layout without some fingers; the joints that move nothing else are locked, stretched.
@@ -191,9 +224,16 @@ class Maker {
     return layout;
   }
 
+  /// So wide that the object's farthest corner is clear of the fingertips, if they open so far [m].
+  double OpenGap() const {
+    constexpr double kClear = 0.005, kWidest = 0.035;
+    if (object_.empty()) return kOpenGap;
+    return std::clamp(box_.reach - search_.task.radius + kClear, kOpenGap, kWidest);
+  }
+
   /// The best grasps get a way in and a trial; the one that holds with the most margin is taken,
   /// else the first.
-  Found Choose(const std::vector<BallGrasp>& grasps) {
+  Found Choose(const std::vector<BallGrasp>& grasps, double size_mm) {
     RandomStream random(search_.seed, 2);
     const std::size_t count = std::min<std::size_t>(grasps.size(), 4);
     Found best;
@@ -201,33 +241,66 @@ class Maker {
       progress_.Show("finding a way in" + without_ + ", trying it", static_cast<double>(k) / 4);
       Found found;
       found.grasp = grasps[k];
+      search_.task.gap = OpenGap();
       found.way = FindWayIn(hand_, search_.task, found.grasp, 6, &random);
+      if (found.way.stuck >= 0 && search_.task.gap > kOpenGap) {
+        search_.task.gap = kOpenGap;
+        found.way = FindWayIn(hand_, search_.task, found.grasp, 6, &random);
+      }
       if (found.way.stuck >= 0 && k + 1 < count) continue;
       Scenario& scenario = found.model.scenario;
       scenario.name = scenario.hand = hand_.name;
-      scenario.object = BallFor(size_mm_);
+      scenario.object = object_.empty() ? BallFor(size_mm) : NamedObject();
       scenario.q_preshape = found.way.open;
       scenario.q_closed = found.way.closed;
       scenario.X_WO.translation() = found.grasp.p_WO;
       scenario.gravity_W = gravity_W_;
       found.model.hand = hand_;
-      found.model.object = LoadObject(scenario.object, ModelSearchPath());
-      found.choice = ChooseStepper(found.model, {});
-      found.trial = TryToHold(found.model, found.choice.stepper, search_.seed, kHold);
+      found.model.object = object_.empty() ? LoadObject(scenario.object, ModelSearchPath()) : body_;
+      if (!object_.empty()) {
+        touched_ = true;
+        TryWays(found, &best);
+        continue;
+      }
+      found.Try(search_.seed, 1);
       if (found.Better(best)) best = found;
     }
     return best;
   }
 
+  /// The object as it may lie in a grasp.
+  void TryWays(Found found, Found* best) {
+    const std::vector<Isometry3d> ways = WaysToLie(found.model, box_, found.grasp.p_WO);
+    for (std::size_t k = 0; k < std::min(ways.size(), kWays); ++k) {
+      progress_.Show("laying the object in" + without_ + ", trying it",
+                     static_cast<double>(k) / kWays);
+      found.model.scenario.X_WO = ways[k];
+      found.Try(search_.seed, kTrials);
+      if (found.Better(*best)) *best = found;
+    }
+  }
+
+  /// The object as the scenario names it: a name, or where its file is from there.
+  std::string NamedObject() const {
+    if (fs::path(object_).extension() != ".urdf") return object_;
+    const std::string relative = FromScenario(object_);
+    return relative.empty() ? fs::absolute(object_).string() : relative;
+  }
+
   /// The URDF as the scenario names it: nothing where it stands beside it under the same name.
   std::string NamedUrdf() const {
+    const std::string relative = FromScenario(urdf_);
+    if (relative == out_.stem().string() + ".urdf") return "";
+    return relative.empty() ? fs::absolute(urdf_).string() : relative;
+  }
+
+  /// The way to a file from the scenario's place; empty where there is none.
+  std::string FromScenario(const fs::path& file) const {
     std::error_code ignored;
     const fs::path directory =
         fs::absolute(out_.parent_path().empty() ? fs::path(".") : out_.parent_path(), ignored);
-    const fs::path relative =
-        fs::relative(fs::absolute(urdf_, ignored), directory.lexically_normal(), ignored);
-    if (relative == out_.stem().string() + ".urdf") return "";
-    return relative.empty() ? fs::absolute(urdf_, ignored).string() : relative.string();
+    return fs::relative(fs::absolute(file, ignored), directory.lexically_normal(), ignored)
+        .string();
   }
 
   void Write() {
@@ -236,11 +309,13 @@ class Maker {
     text.layout = guess_.layout;
     text.options = options_.load();
     text.scenario = best_.model.scenario;
-    text.comments = {fmt::format("Made by: regrasp hand new {} -o {} --object-size {:g} --seed {} "
-                                 "--tilt {:g}",
-                                 urdf_.filename().string(), out_.filename().string(), size_mm_,
-                                 search_.seed, tilt_ * 180 / M_PI),
-                     ScoreLine()};
+    text.comments = {
+        fmt::format("Made by: regrasp hand new {} -o {} {}--object-size {:g} --seed {} "
+                    "--tilt {:g}",
+                    urdf_.filename().string(), out_.filename().string(),
+                    object_.empty() ? "" : "--object " + object_ + " ", size_mm_, search_.seed,
+                    tilt_ * 180 / M_PI),
+        ScoreLine()};
     std::ofstream file(out_);
     file << WriteScenario(text, hand_);
     file.close();
@@ -271,7 +346,9 @@ class Maker {
       remarks.push_back(
           fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
     if (hand_.num_fingers() < 3)
-      remarks.push_back("two fingers: `grasp` needs three contacts");
+      remarks.push_back(
+          "two fingers: nothing keeps the ball from turning about the line between them; none can "
+          "leave the grasp, so the hand does not explore or regrasp");
     else if (hand_.num_fingers() == 3)
       remarks.push_back(
           "three fingers: none can leave the grasp; the hand holds and moves the ball "
@@ -346,12 +423,19 @@ class Maker {
 
   const Options& options_;
   fs::path out_, urdf_;
+  std::string object_;  // "": a ball
+  ObjectModel body_;    // otherwise
+  ObjectBox box_;
   double size_mm_, tilt_;
+  std::vector<double> sizes_mm_ = {size_mm_};  // of balls, tried until one is good
+  bool touched_ = false;                       // the fingers can touch one of them
   Vector3d gravity_W_;
   Progress progress_;
   GraspSearch search_;
   HandGuess guess_;
   HandModel hand_;
+  HandLayout whole_;  // with every finger
+  HandModel all_;
   std::vector<std::string> left_out_;  // names of fingers
   std::string without_;                // of the search that runs, for its progress
   ModelReport report_;

@@ -183,8 +183,13 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   scenario.q_preshape = ReadPosture(file, "q_preshape_deg", loaded.hand);
   scenario.q_closed = ReadPosture(file, "q_closed_deg", loaded.hand);
   file.ThrowIfAny();
-  loaded.object =
-      LoadObject(object.empty() ? scenario.object : object, search_path, options, &loaded.report);
+  // What the scenario says of its models counts for its own object, whose file is named from there.
+  const bool beside = fs::path(scenario.object).extension() == ".urdf";
+  loaded.object = object.empty()
+                      ? LoadObject(beside ? (toml_file.parent_path() / scenario.object).string()
+                                          : scenario.object,
+                                   search_path, of_hand, &loaded.report)
+                      : LoadObject(object, search_path, options, &loaded.report);
   return loaded;
 }
 

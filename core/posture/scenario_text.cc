@@ -51,6 +51,9 @@ std::string WriteScenario(const ScenarioText& text, const HandModel& hand) {
   out += fmt::format("\n[palm]\nrotation_deg = {}\nposition_m = {}\n", Triple(turn / kDegree, 4),
                      Triple(layout.X_HR.translation(), 5));
   out += fmt::format("\n[object_pose]\nposition_m = {}\n", Triple(scenario.X_WO.translation(), 5));
+  if (!scenario.X_WO.linear().isIdentity(0))
+    out += fmt::format("rotation_deg = {}\n",
+                       Triple(RotationVector(Quaterniond(scenario.X_WO.linear())) / kDegree, 4));
   for (const auto& finger : layout.fingers)
     out += fmt::format("\n[[finger]]\nname = {}\ntip_link = {}\n", Quoted(finger.name),
                        Quoted(finger.tip_link));

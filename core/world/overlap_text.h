@@ -7,6 +7,10 @@
 
 namespace regrasp {
 
+/// What helps against it.
+inline constexpr const char* kFitsObject =
+    "regrasp hand new HAND --object FILE -o NAME.toml fits a hand to it";
+
 /// "the object begins 5.1 mm inside the link ffdistal", for an overlap that forbids a grasp; empty
 /// for one that does not.
 inline std::array<char, 128> OverlapText(const StartOverlap& overlap, const HandModel& hand) {

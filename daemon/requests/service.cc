@@ -36,7 +36,7 @@ void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
   accepted.warnings.clear();
   const auto text = OverlapText(overlap, hand());
   if (text.front() != 0)
-    accepted.warnings.push_back(text.data() + std::string("; grasp will refuse"));
+    accepted.warnings.push_back(text.data() + fmt::format("; grasp will refuse: {}", kFitsObject));
 }
 
 Outcome Service::Call(const std::string& method, const JsonIn& params, Client* client) {

@@ -151,6 +151,27 @@ class Hand(Case):
                     self.assertEqual(self.json("job", "show", "2")["regrasps"], 0)
                 self.expect(0, "down")
 
+    def test_a_scenario_for_an_object_turns_it_until_it_fits(self):
+        # A flat box, 20 x 60 x 70 mm, named from where the scenario stands; its inertia cannot be.
+        (self.dir / "things").mkdir()
+        box = self.dir / "things" / "flat.urdf"
+        box.write_text('<robot name="flat"><link name="o"><inertial><mass value="0.09"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0"'
+                       ' izz="1"/></inertial><collision><geometry><box size="0.06 0.02 0.07"/></geometry></collision></link></robot>', encoding="utf-8")
+        self.write("four.urdf", hand(4))
+        arguments = ["--object", box, "-o", self.dir / "flat.toml"]
+        self.assertIn("--inertia-from-shape", self.refused(1, "-q", "hand", "new", self.dir / "four.urdf", *arguments))
+        done = self.regrasp("--json", "hand", "new", self.dir / "four.urdf", *arguments, "--inertia-from-shape")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        told = json.loads(done.stdout)
+        self.assertTrue(told["held"], told)
+        self.assertEqual(told["object"], "things/flat.urdf")
+        self.addCleanup(self.regrasp, "down")
+        up = self.expect(0, "up", "--hand", self.dir / "flat.toml", "--clock", "lockstep")
+        self.assertNotIn("warning: the object", up.stdout)
+        self.expect(0, "grasp", "--wait")
+        status = self.json("status")
+        self.assertEqual((status["state"], status["object"]), ("holding", "flat"))
+
     def test_usage(self):
         four = self.write("four.urdf", hand(4))
         self.assertIn("file not found", self.refused(6, "hand", "check", self.dir / "gone.urdf"))

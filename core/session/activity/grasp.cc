@@ -1,6 +1,7 @@
 #include "core/session/activity/grasp.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "core/world/overlap_text.h"
 
@@ -11,8 +12,9 @@ Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) 
     return {Verdict::Kind::kBadState,
             "the object is not presented to the hand; `regrasp reset` brings it back",
             "regrasp reset"};
-  refusal_ = OverlapText(context.world.start_overlap(), context.now.hand);
-  if (refusal_.front() == 0) return {};
+  const auto overlap = OverlapText(context.world.start_overlap(), context.now.hand);
+  if (overlap.front() == 0) return {};
+  std::snprintf(refusal_.data(), refusal_.size(), "%s; %s", overlap.data(), kFitsObject);
   return {Verdict::Kind::kBadState, refusal_.data(),
           "rotation_deg in the object's .toml, object_pose in the hand's, or another object"};
 }

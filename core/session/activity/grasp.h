@@ -19,7 +19,7 @@ class GraspActivity : public Activity {
 
  private:
   GraspSequence sequence_;
-  std::array<char, 128> refusal_{};
+  std::array<char, 192> refusal_{};
 };
 
 }  // namespace regrasp

@@ -1,0 +1,116 @@
+#include "cli/hand/lay_object.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/hand/kinematics.h"
+#include "core/hand/solid.h"
+#include "core/world/start_overlap.h"
+
+namespace regrasp::hand {
+namespace {
+
+constexpr double kSame = 1e-3;       // places of corners that differ by less are alike [m]
+constexpr double kCorners = 1.2;     // a ball that reaches towards the corners
+constexpr double kOtherBall = 5e-3;  // balls that differ by less are one [m]
+
+/// Corners of what the object fills, in O [m].
+std::vector<Vector3d> CornersOf(const ObjectModel& object) {
+  if (object.kind == ObjectModel::Kind::kMesh) return object.vertices_O;
+  Vector3d half = object.half_extents;
+  if (object.kind != ObjectModel::Kind::kBox) half.setConstant(object.radius);
+  if (object.kind == ObjectModel::Kind::kCapsule) half.z() += object.half_length;
+  std::vector<Vector3d> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back(half.cwiseProduct(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+  return corners;
+}
+
+/// Whether two turns bring the same points to about the same places.
+bool Alike(const std::vector<Vector3d>& points, const Matrix3d& a, const Matrix3d& b) {
+  const Matrix3d R = a.transpose() * b;
+  return std::ranges::all_of(points, [&](const Vector3d& p) {
+    return std::ranges::any_of(
+        points, [&](const Vector3d& q) { return (R * p - q).squaredNorm() < kSame * kSame; });
+  });
+}
+
+/// The turns that bring the axes of a box onto those of the hand: 24, or fewer where some make no
+/// difference to `points` (from the middle, along the box).
+std::vector<Matrix3d> Turns(const std::vector<Vector3d>& points) {
+  std::vector<Matrix3d> turns;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      for (int signs = 0; a != b && signs < 4; ++signs) {
+        Matrix3d R = Matrix3d::Zero();
+        R(a, 0) = signs & 1 ? -1 : 1;
+        R(b, 1) = signs & 2 ? -1 : 1;
+        R.col(2) = R.col(0).cross(R.col(1));
+        if (std::ranges::none_of(turns, [&](const Matrix3d& t) { return Alike(points, t, R); }))
+          turns.push_back(R);
+      }
+  return turns;
+}
+
+}  // namespace
+
+ObjectBox BoxOf(const ObjectModel& object) {
+  ObjectBox box;
+  if (object.kind == ObjectModel::Kind::kMesh) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(ObjectSolid(object).inertia);
+    box.R_OB = axes.eigenvectors().rowwise().reverse();  // the least moment is of the longest axis
+    if (box.R_OB.determinant() < 0) box.R_OB.col(2) *= -1;
+  }
+  Vector3d least = Vector3d::Constant(1e9), most = -least;
+  for (const Vector3d& corner : CornersOf(object)) {
+    least = least.cwiseMin(box.R_OB.transpose() * corner);
+    most = most.cwiseMax(box.R_OB.transpose() * corner);
+  }
+  box.size = most - least;
+  box.p_OB = box.R_OB * (0.5 * (least + most));
+  box.reach = object.kind == ObjectModel::Kind::kSphere ? object.radius : 0;
+  if (object.kind != ObjectModel::Kind::kSphere)
+    for (const Vector3d& corner : CornersOf(object))
+      box.reach = std::max(box.reach, (corner - box.p_OB).norm());
+  return box;
+}
+
+std::vector<double> BallsFor(const ObjectBox& box, double least) {
+  Vector3d size = box.size;
+  std::sort(size.begin(), size.end());
+  std::vector<double> balls;
+  const double mean = 0.5 * (size[0] + size[1]);
+  for (const double d : {mean, kCorners * mean, size[1], size[0]}) {
+    const double ball = std::max(d, least);
+    if (std::ranges::none_of(balls, [&](double b) { return std::abs(b - ball) < kOtherBall; }))
+      balls.push_back(ball);
+  }
+  return balls;
+}
+
+std::vector<Isometry3d> WaysToLie(const LoadedScenario& model, const ObjectBox& box,
+                                  const Vector3d& p_WB) {
+  KinematicsData data;
+  ForwardKinematics(model.hand, model.scenario.q_preshape, &data);
+  const std::vector<Isometry3d> X_WL(
+      data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(model.hand.links.size()));
+  std::vector<Vector3d> points;
+  for (const Vector3d& corner : CornersOf(model.object))
+    points.push_back(box.R_OB.transpose() * (corner - box.p_OB));
+  std::vector<std::pair<double, Isometry3d>> ways;
+  for (const Matrix3d& R_WB : Turns(points)) {
+    Isometry3d X_WO = Isometry3d::Identity();
+    X_WO.linear() = R_WB * box.R_OB.transpose();
+    X_WO.translation() = p_WB - X_WO.linear() * box.p_OB;
+    const double depth = DeepestOverlap(model.hand, X_WL, model.object, X_WO).depth;
+    if (depth <= kStartOverlap) ways.emplace_back(depth, X_WO);
+  }
+  std::ranges::stable_sort(ways, {}, [](const auto& way) { return way.first; });
+  std::vector<Isometry3d> sorted;
+  for (const auto& way : ways) sorted.push_back(way.second);
+  return sorted;
+}
+
+}  // namespace regrasp::hand
