@@ -119,7 +119,7 @@ Figures::Exploration Figures::Explore(const std::string& finger, const std::stri
   run.record = daemon_.Run(
       "explore", {{"finger", finger}, {"criterion", criterion}, {"seed", gradient_seed}},
       kExploreChunk, kExploreLimit, [&] {
-        const Json quality = daemon_.Call("quality");
+        const Json quality = daemon_.Call("quality", {{"measures", "frame"}});
         if (At(quality, "stability").is_number())
           run.least_stability = std::min(run.least_stability, quality["stability"].get<double>());
       });

@@ -15,7 +15,8 @@ Eigen::Vector3d Vector3(const Json& json) {
 }  // namespace
 
 void GaitRecord::Look(SteppedDaemon* daemon) {
-  const Json quality = daemon->Call("quality"), contacts = daemon->Call("contacts");
+  const Json quality = daemon->Call("quality", {{"measures", "frame"}}),
+             contacts = daemon->Call("contacts");
   if (quality.at("stability").is_number()) {
     stability_sum_ += quality["stability"].get<double>();
     ++stability_samples_;

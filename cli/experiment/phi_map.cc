@@ -44,7 +44,7 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
   std::deque<std::array<double, 3>> last;
   for (std::int64_t tick = 0; tick < cycles + kTransferLimit; tick += kSampleTicks) {
     daemon->Step(kSampleTicks);
-    const Json quality = daemon->Call("quality");
+    const Json quality = daemon->Call("quality", {{"measures", "frame"}});
     const Json& exploration = At(quality, "exploration");
     const bool sliding = exploration.is_object() && exploration.at("cycle").get<int>() > 0;
     if (!sliding && slid) return;

@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <exception>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <string>
 #include <thread>
+#include <tuple>
 
 #include "cli/experiment/trial.h"
 
@@ -86,6 +91,41 @@ class Progress {
   Clock::time_point begin_ = Clock::now();
 };
 
+/// Hands out units. Explorations that begin with the same grasp go to one worker, one after the
+/// other: its daemon grasps once. (The events of a rotation are counted from before the grasp.)
+class Queue {
+ public:
+  Queue(const Plan& plan, const std::vector<std::size_t>& units) : plan_(plan) {
+    for (const std::size_t unit : units) left_[KeyOf(unit)].push_back(unit);
+  }
+  /// The unit to do after `last`; empty: there is none left.
+  std::optional<std::size_t> Next(std::optional<std::size_t> last) {
+    if (left_.empty()) return {};
+    const auto same = last ? left_.find(KeyOf(*last)) : left_.end();
+    const auto begun = [this](const auto& start) { return begun_.contains(start.first); };
+    auto start = same != left_.end() ? same : std::find_if_not(left_.begin(), left_.end(), begun);
+    if (start == left_.end()) start = left_.begin();  // another worker's: it will not be idle
+    begun_.insert(start->first);
+    const std::size_t unit = start->second.front();
+    start->second.pop_front();
+    if (start->second.empty()) left_.erase(start);
+    return unit;
+  }
+
+ private:
+  /// Which case comes first, then noise and seed of an exploration; the unit itself otherwise.
+  using Key = std::tuple<std::size_t, std::string, std::int64_t, std::size_t>;
+  Key KeyOf(std::size_t index) const {
+    const Unit unit = plan_.unit(index);
+    if (plan_.rotation()) return {unit.which, "", 0, index};
+    return {unit.which, unit.noise, unit.seed, 0};
+  }
+
+  const Plan& plan_;
+  std::map<Key, std::deque<std::size_t>> left_;
+  std::set<Key> begun_;
+};
+
 }  // namespace
 
 void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
@@ -97,20 +137,21 @@ void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
 
   std::mutex mutex;  // of all below
   Progress progress(context, mine.size() - left.size(), mine.size());
-  std::size_t next = 0;
+  Queue queue(plan, left);
   std::exception_ptr failure;
   const auto work = [&] {
     try {
       std::optional<std::size_t> prepared;  // the case that the daemon is for
       std::unique_ptr<SteppedDaemon> daemon;
+      std::optional<std::size_t> unit;
       while (true) {
-        std::size_t unit = 0;
         {
           const std::lock_guard lock(mutex);
-          if (next == left.size() || failure) return;
-          unit = left[next++];
+          if (failure) return;
+          unit = queue.Next(unit);
         }
-        const Unit what = plan.unit(unit);
+        if (!unit) return;
+        const Unit what = plan.unit(*unit);
         if (prepared != what.which) {
           daemon.reset();
           daemon = std::make_unique<SteppedDaemon>(plan.DaemonArguments(what.which));
@@ -119,7 +160,7 @@ void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
         }
         const UnitResult result = RunUnit(daemon.get(), plan, what);
         const std::lock_guard lock(mutex);
-        store->Add(unit, result);
+        store->Add(*unit, result);
         progress.Finished(result.rows);
       }
     } catch (...) {

@@ -68,7 +68,9 @@ void SteppedDaemon::LeaveFault() {
 }
 
 Json SteppedDaemon::Grasp(std::int64_t seed) {
-  Json start = {{"seed", seed}, {"noise", Call("noise.get")}, {"parameters", Call("param.get")}};
+  const Json status = Call("status");
+  Json start = {{"seed", seed}};
+  for (const char* what : {"object", "noise", "changed_parameters"}) start[what] = status.at(what);
   if (start_ == start) {
     const Json restore = Call("checkpoint.restore", {{"name", kStart}});
     const Json record = Call("job.wait", {{"id", restore.at("job")}});

@@ -52,6 +52,14 @@ inline constexpr std::array kJobWait = {
               .max = 1e6,
               .default_text = "no limit"},
 };
+inline constexpr std::string_view kQualityMeasures[] = {"all", "frame"};
+inline constexpr std::array kQuality = {
+    ParamSpec{.name = "measures",
+              .type = kEnum,
+              .sentence = "all, or frame: only those that every frame has, for who asks often",
+              .values = kQualityMeasures,
+              .default_text = "all"},
+};
 inline constexpr std::array kShape = {
     ParamSpec{.name = "mesh",
               .type = kBool,
@@ -121,11 +129,7 @@ inline constexpr std::array kInspectRows = {
         false,
         "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
     MethodSpec{
-        "quality",
-        "quality",
-        "quality of the grasp",
-        {},
-        false,
+        "quality", "quality", "quality of the grasp", kQuality, false,
         "tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, "
         "measures: [NAME] and the value of each by its name, torque_scale_m "
         "(mean distance of the contacts from the object's centre; torques are divided by "

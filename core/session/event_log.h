@@ -30,7 +30,8 @@ class EventLog {
   }
   /// All of them, oldest first; they are gone with the next call.
   std::span<const Event> Take() {
-    taken_ = pending_;
+    taken_.clear();  // not by assignment: that copies what is not used, too
+    for (const Event& event : pending_) taken_.push_back(event);
     pending_.clear();
     return {taken_.data(), taken_.size()};
   }

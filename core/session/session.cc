@@ -165,7 +165,8 @@ void Session::Save(std::string* state) const {
 std::span<const Event> Session::TakeEvents() { return impl_->log.Take(); }
 
 std::span<const JobRecord> Session::TakeFinishedJobs() {
-  impl_->finished_out = impl_->finished;
+  impl_->finished_out.clear();
+  for (const JobRecord& job : impl_->finished) impl_->finished_out.push_back(job);
   impl_->finished.clear();
   return {impl_->finished_out.data(), impl_->finished_out.size()};
 }

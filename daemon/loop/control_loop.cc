@@ -144,7 +144,7 @@ void ControlLoop::TakeRequests() {
         break;
       case ControlRequest::Kind::kMark:
         ApplyWaiting();  // what was accepted before belongs to it
-        Mark(taken.number);
+        Mark(taken.number, taken.request.part);
         break;
       case ControlRequest::Kind::kRestore:
         BeginRestore(std::move(taken.request));

@@ -31,7 +31,10 @@ struct ControlRequest {
     kRestore,
     kReset,  ///< a new session
   };
+  /// kMark: what is told besides; it takes time of the control thread.
+  enum class Part : std::uint8_t { kNothing, kState, kFelt };
   Kind kind = Kind::kCommand;
+  Part part = Part::kNothing;
   Command command = {};         ///< kCommand; kRestore: the branch command (job, reseed, seed)
   std::int64_t job = 0;         ///< kStep, kCancelStep, kRestore
   std::int64_t ticks = 0;       ///< kStep
@@ -62,8 +65,8 @@ struct JournalNews {
   std::uint64_t request = 0;                      ///< kMark: number of the request
   JobRecord job = {};                             ///< kMark: the job that runs; id 0 = none
   SessionState state = {};                        ///< kMark
-  std::shared_ptr<const std::string> saved = {};  ///< kMark: SaveState()
-  std::shared_ptr<const FeltSurface> felt = {};   ///< kMark
+  std::shared_ptr<const std::string> saved = {};  ///< kMark with kState: SaveState()
+  std::shared_ptr<const FeltSurface> felt = {};   ///< kMark with kFelt
   std::shared_ptr<const RunStart> start = {};     ///< kBegin
 };
 
@@ -158,7 +161,7 @@ class ControlLoop {
   void Adopt(std::unique_ptr<Session> session);
   void EndRestore(JobState state, const char* error);
   void Apply(const Command& command);
-  void Mark(std::uint64_t request);
+  void Mark(std::uint64_t request, ControlRequest::Part part);
   void BeginJournal(std::shared_ptr<const RunStart> start);
   void EmitNews(JournalNews news);
   void TickOnce();

@@ -6,7 +6,7 @@
 #include "daemon/loop/control_loop.h"
 
 namespace regrasp {
-void ControlLoop::Mark(std::uint64_t request) {
+void ControlLoop::Mark(std::uint64_t request, ControlRequest::Part part) {
   CollectOutput();  // jobs that have ended before it go before it
   Publish();        // whoever is told of the mark also has its frame
   JournalNews news;
@@ -16,8 +16,10 @@ void ControlLoop::Mark(std::uint64_t request) {
   news.entry.tick = session_->tick();
   news.entry.state_hash = session_->StateHash();
   news.state = session_->state();
-  news.saved = std::make_shared<const std::string>(SaveState(*session_));
-  news.felt = std::make_shared<const FeltSurface>(session_->felt_surface());
+  if (part == ControlRequest::Part::kState)
+    news.saved = std::make_shared<const std::string>(SaveState(*session_));
+  if (part == ControlRequest::Part::kFelt)
+    news.felt = std::make_shared<const FeltSurface>(session_->felt_surface());
   session_->Snapshot(&scratch_.frame, false);
   if (session_->job_running()) news.job = scratch_.frame.job;
   EmitNews(std::move(news));

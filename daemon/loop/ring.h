@@ -16,13 +16,8 @@ class Ring {
 
  public:
   /// Producer. False, and nothing changed, when full.
-  bool Push(T value) {
-    const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    if (tail - head_.load(std::memory_order_acquire) == N) return false;
-    (*items_)[tail % N] = std::move(value);
-    tail_.store(tail + 1, std::memory_order_release);
-    return true;
-  }
+  bool Push(const T& value) { return Put(value); }
+  bool Push(T&& value) { return Put(std::move(value)); }
   /// Consumer. False when empty.
   bool Pop(T* value) {
     const std::size_t head = head_.load(std::memory_order_relaxed);
@@ -37,6 +32,15 @@ class Ring {
   }
 
  private:
+  template <typename U>
+  bool Put(U&& value) {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    if (tail - head_.load(std::memory_order_acquire) == N) return false;
+    (*items_)[tail % N] = std::forward<U>(value);
+    tail_.store(tail + 1, std::memory_order_release);
+    return true;
+  }
+
   std::unique_ptr<std::array<T, N>> items_ = std::make_unique<std::array<T, N>>();
   alignas(64) std::atomic<std::size_t> head_{0};
   alignas(64) std::atomic<std::size_t> tail_{0};

@@ -183,48 +183,49 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
   const fs::path path = PathOf(service, params);
   Outcome outcome;
   outcome.begin = [&service, path, name = params.String("name")](Done done) {
-    service.Mark([&service, path, name, done](const JournalNews& mark) {
-      struct Work {
-        Checkpoint checkpoint;
-        std::string failure;
-      };
-      const auto work = std::make_shared<Work>();
-      work->checkpoint = {.name = name,
-                          .tick = mark.entry.tick,
-                          .state_hash = mark.entry.state_hash,
-                          .build = std::string(BuildIdentity()),
-                          .state = std::string(Name(mark.state)),
-                          .job = mark.job,
-                          .commands = service.journal().entries.size(),
-                          .journal = service.journal(),
-                          .saved_state = ToBase64(*mark.saved)};
-      const auto write = [work, path, most = service.config().budgets.checkpoints] {
-        try {
-          if (!fs::exists(path) && FilesIn(path.parent_path(), {kSuffix}).size() >= most)
-            throw std::runtime_error(
-                fmt::format("{} checkpoints are in {}, as many as max_checkpoints allows", most,
-                            path.parent_path().string()));
-          ReplaceFile(path, CheckpointText(work->checkpoint));
-        } catch (const std::exception& e) {
-          work->failure = e.what();
-        }
-      };
-      const auto finish = [&service, work, path, done] {
-        if (!work->failure.empty()) {
-          const RpcError error{
-              ErrorCode::kIo, work->failure, "look at output_dir in status", {}, {}};
-          return done({}, &error);
-        }
-        Json result = HeadJson(work->checkpoint, service.dt());
-        result["path"] = path.string();
-        done(std::move(result), nullptr);
-      };
-      if (!service.host().Background(write, finish)) {
-        const RpcError error{
-            ErrorCode::kBusy, "too many files are being written", "try again later", {}, {}};
-        done({}, &error);
-      }
-    });
+    service.Mark(
+        ControlRequest::Part::kState, [&service, path, name, done](const JournalNews& mark) {
+          struct Work {
+            Checkpoint checkpoint;
+            std::string failure;
+          };
+          const auto work = std::make_shared<Work>();
+          work->checkpoint = {.name = name,
+                              .tick = mark.entry.tick,
+                              .state_hash = mark.entry.state_hash,
+                              .build = std::string(BuildIdentity()),
+                              .state = std::string(Name(mark.state)),
+                              .job = mark.job,
+                              .commands = service.journal().entries.size(),
+                              .journal = service.journal(),
+                              .saved_state = ToBase64(*mark.saved)};
+          const auto write = [work, path, most = service.config().budgets.checkpoints] {
+            try {
+              if (!fs::exists(path) && FilesIn(path.parent_path(), {kSuffix}).size() >= most)
+                throw std::runtime_error(
+                    fmt::format("{} checkpoints are in {}, as many as max_checkpoints allows", most,
+                                path.parent_path().string()));
+              ReplaceFile(path, CheckpointText(work->checkpoint));
+            } catch (const std::exception& e) {
+              work->failure = e.what();
+            }
+          };
+          const auto finish = [&service, work, path, done] {
+            if (!work->failure.empty()) {
+              const RpcError error{
+                  ErrorCode::kIo, work->failure, "look at output_dir in status", {}, {}};
+              return done({}, &error);
+            }
+            Json result = HeadJson(work->checkpoint, service.dt());
+            result["path"] = path.string();
+            done(std::move(result), nullptr);
+          };
+          if (!service.host().Background(write, finish)) {
+            const RpcError error{
+                ErrorCode::kBusy, "too many files are being written", "try again later", {}, {}};
+            done({}, &error);
+          }
+        });
   };
   return outcome;
 }

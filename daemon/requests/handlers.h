@@ -7,8 +7,6 @@
 
 namespace regrasp {
 
-Json StatusJson(Service& service);
-
 /// Answers with what `make` returns, or the RpcException it throws, on the worker thread: for what
 /// reads the disk. `make` shares nothing with the I/O thread.
 Outcome Later(Service& service, std::function<Json()> make);

@@ -2,60 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/journal/journal.h"
 #include "core/journal/journal_text.h"
-#include "daemon/output/recorder.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
 
 namespace regrasp {
-
-Json StatusJson(Service& service) {
-  const Published& newest = service.newest();
-  const Frame& frame = newest.frame;
-  Json job;
-  if (const JobRecord* known = service.jobs().Find(frame.job.id)) job = service.JobAnswer(*known);
-  if (const JobRecord* pending = service.jobs().Unfinished()) job = service.JobAnswer(*pending);
-  const double speed = service.speed();
-  const auto uptime = std::chrono::steady_clock::now() - service.started();
-  return {
-      {"version", Version()},
-      {"protocol", kWireVersion},
-      {"state", Name(frame.state)},
-      {"paused", newest.paused},
-      {"clock", service.clock() == ClockMode::kLockstep ? "lockstep" : "continuous"},
-      {"advancing", newest.advancing},
-      {"tick", frame.tick},
-      {"time_s", frame.time_s},
-      {"dt_s", service.dt()},
-      {"state_hash", HashText(frame.state_hash)},
-      {"real_time_factor", service.real_time_factor()},
-      {"tick_p99_s", service.control().tick_p99()},
-      {"lateness_p99_s", service.control().lateness_p99()},
-      {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
-      {"stepper",
-       service.config().control.session.world.stepper == Stepper::kFast ? "fast" : "exact"},
-      {"stepper_reason", service.config().stepper_reason},
-      {"seed", frame.seed},
-      {"hand", service.hand().name},
-      {"object", service.accepted.object->name},
-      {"warnings", service.accepted.warnings},
-      {"stand_in", frame.stand_in},
-      {"holds_alone", HoldsAlone(frame.state, frame.stand_in)},
-      {"job", std::move(job)},
-      {"incident", service.incident_summary()},
-      {"gait", GaitJson(frame.gait, service.hand())},
-      {"noise", NoiseJson(service.accepted.noise)},
-      {"changed_parameters", service.ChangedParameters()},
-      {"recording", service.recorder ? Json(service.recorder->path().filename().string()) : Json()},
-      {"clients", service.host().clients()},
-      {"backlog", service.control().backlog()},
-      {"frames_dropped", service.control().dropped()},
-      {"uptime_s", std::chrono::duration<double>(uptime).count()},
-      {"output_dir", service.config().output_dir.string()}};
-}
 
 namespace handlers {
 namespace {
@@ -87,13 +39,14 @@ Outcome TopicAnswer(Service& service, const char* topic) {
 
 }  // namespace
 
-Outcome Status(Service& service, const Params&, Client&) { return {.result = StatusJson(service)}; }
+Outcome Status(Service& service, const Params&, Client&) { return TopicAnswer(service, "status"); }
 Outcome Contacts(Service& service, const Params&, Client&) {
   return TopicAnswer(service, "contacts");
 }
 Outcome Joints(Service& service, const Params&, Client&) { return TopicAnswer(service, "joints"); }
-Outcome Quality(Service& service, const Params&, Client&) {
-  return TopicAnswer(service, "quality");
+Outcome Quality(Service& service, const Params& params, Client&) {
+  const bool all = params.String("measures", "all") == "all";
+  return TopicAnswer(service, all ? "quality" : kFrameQuality);
 }
 Outcome Truth(Service& service, const Params&, Client&) { return TopicAnswer(service, "truth"); }
 
@@ -147,7 +100,7 @@ Outcome Hello(Service&, const Params& params, Client&) {
 Outcome Identity(Service& service, const Params&, Client&) {
   const SessionConfig& session = service.config().control.session;
   LoadedScenario model = session.model;
-  model.object = *service.accepted.object;
+  model.object = *service.accepted().object;
   const ModelHashes hashes = HashModels(model);
   const auto named = [](const std::string& name, std::uint64_t hash) {
     return Json{{"name", name}, {"hash", HashText(hash)}};

@@ -35,7 +35,7 @@ void ReadExplore(const Service& service, const Params& params, Command* command)
   command->estimator =
       EnumNamed<Estimator>(params.String("estimator", "least_squares"), kEstimatorNames);
   command->seed = static_cast<std::uint64_t>(
-      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted().seed)));
   command->max_cycles = static_cast<int>(params.Integer("max_cycles", 0));
 }
 
@@ -93,8 +93,8 @@ template <std::size_t row>
 Outcome Start(Service& service, const Params& params, Client&) {
   Command command = ReadRequest(service, kJobTable[row], params);
   service.CheckAllowed(command.type);
-  service.CheckMeasure(service.accepted.parameters, kJobTable[row].id, command.criterion);
-  const Verdict enough = CheckFingers(service.hand(), service.accepted.parameters, command);
+  service.CheckMeasure(service.accepted().parameters, kJobTable[row].id, command.criterion);
+  const Verdict enough = CheckFingers(service.hand(), service.accepted().parameters, command);
   if (enough.kind != Verdict::Kind::kAllowed)
     throw RpcException(ErrorCode::kBadState, enough.reason, enough.hint);
   JobRecord& job = service.jobs().Add(kJobTable[row].id);

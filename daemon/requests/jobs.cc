@@ -15,6 +15,7 @@ JobRecord& JobTable::Add(JobMethod method) {
         std::ranges::find_if(jobs_, [](const JobRecord& j) { return Ended(j.state); });
     if (oldest != jobs_.end()) jobs_.erase(oldest);
   }
+  ++changes_;
   JobRecord& job = jobs_.emplace_back();
   job.id = ++last_id_;
   job.method = method;
@@ -23,6 +24,7 @@ JobRecord& JobTable::Add(JobMethod method) {
 
 void JobTable::Withdraw(std::int64_t id) {
   if (jobs_.empty() || jobs_.back().id != id) return;
+  ++changes_;
   jobs_.pop_back();
   --last_id_;
 }
@@ -39,6 +41,7 @@ const JobRecord* JobTable::Find(std::int64_t id) const {
 void JobTable::Update(const JobRecord& record) {
   JobRecord* known = FindMutable(record.id);
   if (!known || Ended(known->state)) return;
+  ++changes_;
   // A job that ended before it began has no start, and its fields are those of the request.
   const ExploreResult requested = known->explore;
   const MoveResult wanted = known->move;

@@ -26,6 +26,8 @@ class JobTable {
   /// Reports that are older than what is known change nothing. Waiters of a finished job are
   /// called.
   void Update(const JobRecord& record);
+  /// Grows with every change of a record.
+  std::uint64_t changes() const { return changes_; }
   /// The record, or null when there is none (any more).
   const JobRecord* Find(std::int64_t id) const;
   /// The last kKept jobs, oldest first.
@@ -46,6 +48,7 @@ class JobTable {
 
   std::deque<JobRecord> jobs_;
   std::int64_t last_id_ = 0;
+  std::uint64_t changes_ = 0;
   struct Waiting {
     std::int64_t job;
     Waiter waiter;

@@ -16,7 +16,7 @@ const ParameterInfo& Row(const Command& command) {
 }
 
 Json Entry(const Service& service, const ParameterInfo& info) {
-  const Vector3d value = info.get(service.accepted.parameters);
+  const Vector3d value = info.get(service.accepted().parameters);
   const Vector3d standard = info.get(service.DefaultValues());
   return {{"name", info.name},
           {"value", ParameterValueJson(info, value)},
@@ -77,7 +77,7 @@ Command ReadMember(const Service& service, const std::string& name, const JsonIn
 /// What is to be done for all to have the values that the commands give them.
 std::vector<Command> Changes(const Service& service, std::vector<Command> commands) {
   std::ranges::stable_partition(commands, IsPreset, Row);
-  Parameters reached = service.accepted.parameters;
+  Parameters reached = service.accepted().parameters;
   std::erase_if(commands, [&](const Command& command) {
     if (Row(command).get(reached) == command.value) return true;
     SetParameter(&reached, command);
@@ -141,7 +141,7 @@ Outcome ParamLoad(Service& service, const Params& params, Client&) {
 
 Outcome ParamReset(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kParameter);
-  const Parameters defaults = service.DefaultValues(), before = service.accepted.parameters;
+  const Parameters defaults = service.DefaultValues(), before = service.accepted().parameters;
   std::vector<Command> commands;
   for (std::size_t i = 0; i < ParameterTable().size(); ++i) {
     const ParameterInfo& info = ParameterTable()[i];
@@ -154,7 +154,7 @@ Outcome ParamReset(Service& service, const Params& params, Client&) {
   const std::uint64_t barrier = service.SetParameters(commands);
   Json list = Json::array();
   for (const ParameterInfo& info : ParameterTable()) {  // a preset changes others, too
-    if (info.get(before) == info.get(service.accepted.parameters)) continue;
+    if (info.get(before) == info.get(service.accepted().parameters)) continue;
     Json& entry = list.emplace_back(Entry(service, info));
     entry["before"] = ParameterValueJson(info, info.get(before));
   }

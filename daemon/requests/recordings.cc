@@ -46,10 +46,10 @@ Json FileJson(const fs::path& path, const fs::path& recording) {
 }  // namespace
 
 Outcome RecordStart(Service& service, const Params& params, Client&) {
-  if (service.recorder)
+  if (service.recorder())
     throw RpcException(
         ErrorCode::kBadState,
-        fmt::format("{} is being recorded", service.recorder->path().filename().string()),
+        fmt::format("{} is being recorded", service.recorder()->path().filename().string()),
         "regrasp record stop");
   const fs::path& directory = service.config().output_dir;
   const double rate_hz = params.Number("rate_hz", kDefaultRate);
@@ -58,15 +58,15 @@ Outcome RecordStart(Service& service, const Params& params, Client&) {
                       {".mcap"}, "run.mcap");
   try {
     fs::create_directories(directory);
-    service.recorder =
-        std::make_shared<Recorder>(directory / file, rate_hz, service.journal(), service.run(),
-                                   service.config().budgets.recording_bytes);
+    service.SetRecorder(std::make_shared<Recorder>(directory / file, rate_hz, service.journal(),
+                                                   service.run(),
+                                                   service.config().budgets.recording_bytes));
   } catch (const std::exception& e) {
     throw RpcException(RpcError{
         ErrorCode::kIo, e.what(), "another name, or regrasp record start without one", "file", {}});
   }
   service.recording_end.clear();
-  service.recorder->Add(service.newest());
+  service.recorder()->Add(service.newest());
   return {.result = {{"file", file},
                      {"path", (directory / file).string()},
                      {"rate_hz", rate_hz},
@@ -75,16 +75,16 @@ Outcome RecordStart(Service& service, const Params& params, Client&) {
 }
 
 Outcome RecordStop(Service& service, const Params&, Client&) {
-  if (!service.recorder && !service.recording_end.empty())
+  if (!service.recorder() && !service.recording_end.empty())
     throw RpcException(ErrorCode::kIo, std::exchange(service.recording_end, {}),
                        "regrasp record list");
-  if (!service.recorder)
+  if (!service.recorder())
     throw RpcException(ErrorCode::kBadState, "nothing is being recorded", "regrasp record start");
   Outcome outcome;
   outcome.begin = [&service](Done done) {
     // What has happened until now belongs to it.
-    service.Mark([&service, done](const JournalNews&) {
-      const std::shared_ptr<Recorder> recorder = std::move(service.recorder);
+    service.Mark(ControlRequest::Part::kNothing, [&service, done](const JournalNews&) {
+      const std::shared_ptr<Recorder> recorder = service.SetRecorder(nullptr);
       if (!recorder) {  // another client was faster
         const RpcError error{
             ErrorCode::kBadState, "nothing is being recorded", "regrasp record start", {}, {}};
@@ -113,7 +113,7 @@ Outcome RecordStop(Service& service, const Params&, Client&) {
 }
 
 Outcome RecordList(Service& service, const Params&, Client&) {
-  const fs::path recording = service.recorder ? service.recorder->path() : fs::path();
+  const fs::path recording = service.recorder() ? service.recorder()->path() : fs::path();
   return Later(service, [directory = service.config().output_dir, recording]() -> Json {
     Json list = Json::array();
     for (const fs::path& path : FilesIn(directory, {".mcap"}))

@@ -120,8 +120,8 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->options.with_title = params.Bool("title", true);
   job->options.font_pt = params.Number("font_size_pt", job->options.font_pt);
   job->options.dpi = params.Number("dpi", 0);
-  job->options.changed = ChangedText(service.accepted.parameters, service.journal().config.model);
-  job->options.object_name = service.accepted.object->name;
+  job->options.changed = ChangedText(service.accepted().parameters, service.journal().config.model);
+  job->options.object_name = service.accepted().object->name;
   job->frames = service.history().Frames(job->options.last_s);
   if (of == PlotOf::kNewestFrame) {
     job->frames = {std::make_shared<const Frame>(service.newest().frame)};
@@ -150,7 +150,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   }
   job->events = service.history().Events();
   job->hand = service.hand();
-  job->object = service.accepted.object;
+  job->object = service.accepted().object;
   const std::int64_t tick = job->incident ? job->incident->event.tick : job->frames.back()->tick;
 
   const auto draw = [&service, job, tick](Done done) {
@@ -176,7 +176,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   // What was felt is the control thread's; a session that has faulted is not asked any more.
   if (of == PlotOf::kFeltSurface && service.newest().frame.state != SessionState::kFaulted)
     outcome.begin = [&service, job, draw](Done done) {
-      service.Mark([job, draw, done](const JournalNews& mark) {
+      service.Mark(ControlRequest::Part::kFelt, [job, draw, done](const JournalNews& mark) {
         job->felt = mark.felt;
         draw(done);
       });

@@ -16,11 +16,11 @@ std::string_view Version() { return REGRASP_VERSION; }
 Service::Service(ServiceConfig config, Host* host)
     : config_(std::move(config)), host_(host), control_(config_.control) {
   const SessionConfig& session = config_.control.session;
-  accepted.parameters = session.parameters;
-  accepted.noise = session.noise;
-  accepted.seed = session.seed;
+  accepted_.parameters = session.parameters;
+  accepted_.noise = session.noise;
+  accepted_.seed = session.seed;
   AcceptObject(std::make_shared<const ObjectModel>(session.model.object));
-  accepted.paused = config_.control.paused;
+  accepted_.paused = config_.control.paused;
   RemoveAbandonedDrafts(config_.output_dir);
   Drain();
 }
@@ -32,11 +32,33 @@ void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
   const std::vector<Isometry3d> X_WL(
       data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(hand().links.size()));
   const StartOverlap overlap = DeepestOverlap(hand(), X_WL, *object, scenario.X_WO);
+  Accepted& accepted = Accept();
   accepted.object = std::move(object);
   accepted.warnings.clear();
   const auto text = OverlapText(overlap, hand());
   if (text.front() != 0)
     accepted.warnings.push_back(text.data() + fmt::format("; grasp will refuse: {}", kFitsObject));
+  SetDefaults();
+}
+
+Service::Accepted& Service::Accept() {
+  status_.Forget();
+  return accepted_;
+}
+
+Parameters& Service::AcceptParameters() {
+  ForgetTopics();
+  return accepted_.parameters;
+}
+
+std::shared_ptr<Recorder> Service::SetRecorder(std::shared_ptr<Recorder> recorder) {
+  status_.Forget();
+  return std::exchange(recorder_, std::move(recorder));
+}
+
+void Service::ForgetTopics() {
+  topics_.clear();
+  status_.Forget();
 }
 
 Outcome Service::Call(const std::string& method, const JsonIn& params, Client* client) {
@@ -61,23 +83,23 @@ Json Service::JobAnswer(const JobRecord& job) const {
   return json;
 }
 
-std::string Service::Members(const Json& object) {
-  const std::string text = ToText(object);
-  return text.substr(1, text.size() - 2);
-}
-
 const Sample& Service::Topic(const std::string& topic) {
   Sample& sample = topics_[topic];
-  const bool changes_between_frames = topic == "status";
-  if (!sample.fields.empty() && !changes_between_frames) return sample;
   const Frame& frame = newest_.frame;
   sample.time_s = frame.time_s;
+  if (topic == "status") {
+    if (std::exchange(jobs_written_, jobs_.changes()) != jobs_.changes()) status_.Forget();
+    if (!status_.known()) status_.Write(*this);
+    sample.fields = status_.Fields(*this);
+    return sample;
+  }
+  if (!sample.fields.empty()) return sample;
   const auto json = [&]() -> Json {
-    if (topic == "contacts") return ContactsJson(frame, hand(), accepted.parameters);
+    if (topic == "contacts") return ContactsJson(frame, hand(), accepted_.parameters);
     if (topic == "joints") return JointsJson(frame, hand());
-    if (topic == "quality") return QualityJson(frame, hand(), accepted.parameters);
-    if (topic == "truth") return TruthJson(frame, hand());
-    return StatusJson(*this);
+    if (topic == "quality") return QualityJson(frame, hand(), accepted_.parameters, true);
+    if (topic == kFrameQuality) return QualityJson(frame, hand(), accepted_.parameters, false);
+    return TruthJson(frame, hand());
   };
   sample.fields = Members(json());
   return sample;
@@ -112,25 +134,26 @@ std::vector<std::string> Service::Names(NameSource source) const {
   return names;
 }
 
-Parameters Service::DefaultValues() const {
-  Parameters defaults = DefaultParameters(config_.control.session.model);
-  return ParametersAfterReset(defaults, accepted.object.get());
+void Service::SetDefaults() {
+  const Parameters defaults = DefaultParameters(config_.control.session.model);
+  defaults_ = ParametersAfterReset(defaults, accepted_.object.get());
+  status_.Forget();
 }
 
 Json Service::ChangedParameters() const {
-  const Parameters defaults = DefaultValues();
+  const Parameters& defaults = DefaultValues();
   Json changed = Json::object();
   for (const ParameterInfo& info : ParameterTable())
-    if (info.get(accepted.parameters) != info.get(defaults))
-      changed[std::string(info.name)] = ParameterValueJson(info, info.get(accepted.parameters));
+    if (info.get(accepted_.parameters) != info.get(defaults))
+      changed[std::string(info.name)] = ParameterValueJson(info, info.get(accepted_.parameters));
   return changed;
 }
 
 std::string Service::SourceOfValue(const ParameterInfo& info) const {
-  if (info.get(accepted.parameters) == info.get(DefaultValues())) return std::string(info.source);
+  if (info.get(accepted_.parameters) == info.get(DefaultValues())) return std::string(info.source);
   const auto origin = config_.parameter_origins.find(std::string(info.name));
   if (origin != config_.parameter_origins.end()) return "configuration, " + origin->second;
-  return IsSetByPreset(info) && info.get(accepted.parameters) == info.get(PresetValues())
+  return IsSetByPreset(info) && info.get(accepted_.parameters) == info.get(PresetValues())
              ? "gait.preset"
              : "set while running";
 }
@@ -138,7 +161,7 @@ std::string Service::SourceOfValue(const ParameterInfo& info) const {
 Parameters Service::PresetValues() const {
   Parameters values = DefaultValues();
   for (const ParameterInfo& info : ParameterTable())
-    if (IsPreset(info)) SetByUser(info, info.get(accepted.parameters), &values);
+    if (IsPreset(info)) SetByUser(info, info.get(accepted_.parameters), &values);
   return values;
 }
 

@@ -21,6 +21,7 @@
 #include "daemon/output/incident.h"
 #include "daemon/requests/jobs.h"
 #include "daemon/requests/params.h"
+#include "daemon/requests/status_text.h"
 #include "daemon/wire/json.h"
 #include "daemon/wire/rpc.h"
 
@@ -31,6 +32,9 @@ class Recorder;
 /// Called once with a result, or with an error; further calls do nothing. When its last copy goes
 /// without a call, the request is answered with an internal error.
 using Done = std::function<void(Json result, const RpcError* error)>;
+
+/// `quality` without what no frame has: quick to make.
+inline constexpr const char* kFrameQuality = "quality of a frame";
 
 /// What a topic says of a moment, as text, made once for all who ask.
 struct Sample {
@@ -116,15 +120,21 @@ class Service {
   /// The record of a job, with the incident that ended it.
   Json JobAnswer(const JobRecord& job) const;
 
-  /// The present value of a subscription topic other than events; valid until the next call.
+  /// The present value of a subscription topic other than events, or of kFrameQuality; valid until
+  /// the next call. Made once for all who ask until a new frame has come in or something was
+  /// accepted; of `status` all but what changes by itself.
   const Sample& Topic(const std::string& topic);
+  /// Topics are written anew: something that they show has changed.
+  void ForgetTopics();
   /// Changes whenever a new frame has come in.
   std::uint64_t frame_number() const { return frame_number_; }
 
   // For the handlers.
   ControlLoop& control() { return control_; }
-  Host& host() { return *host_; }
+  const ControlLoop& control() const { return control_; }
+  Host& host() const { return *host_; }
   JobTable& jobs() { return jobs_; }
+  const JobTable& jobs() const { return jobs_; }
   const Published& newest() const { return newest_; }
   const History& history() const { return history_; }
   /// The last ones, oldest first, as `events` lists them: JSON objects.
@@ -143,12 +153,14 @@ class Service {
   const Journal& journal() const { return journal_; }
   std::uint64_t run() const { return run_; }  ///< its number
   /// The run file that is being written, or null.
-  std::shared_ptr<Recorder> recorder;
+  const std::shared_ptr<Recorder>& recorder() const { return recorder_; }
+  /// Returns the one before.
+  std::shared_ptr<Recorder> SetRecorder(std::shared_ptr<Recorder> recorder);
   /// Why the last one ended by itself, until somebody asked: it failed, or was full.
   std::string recording_end;
   /// Asks for the tick and the state hash of this moment, after every command accepted before;
   /// `told` is called on the I/O thread when journal() is complete up to there.
-  void Mark(std::function<void(const JournalNews&)> told);
+  void Mark(ControlRequest::Part part, std::function<void(const JournalNews&)> told);
   /// Calls `then` on the I/O thread once the control thread has taken `request` and the frames that
   /// show it are here.
   void AfterTaken(std::uint64_t request, std::function<void()> then);
@@ -164,11 +176,16 @@ class Service {
     /// What keeps this object from being grasped: it begins inside a link.
     std::vector<std::string> warnings;
     bool paused = false;
-  } accepted;
+  };
+  const Accepted& accepted() const { return accepted_; }
+  /// To change any of them but the parameters: `status` is written anew.
+  Accepted& Accept();
+  /// To change the parameters: all topics are written anew.
+  Parameters& AcceptParameters();
   void AcceptObject(std::shared_ptr<const ObjectModel> object);
 
   /// What the parameters are unless somebody changes them: built in, or of the present models.
-  Parameters DefaultValues() const;
+  const Parameters& DefaultValues() const { return defaults_; }
   /// The parameters that differ from that: {NAME: value}.
   Json ChangedParameters() const;
   /// Where the present value comes from: the table's source while it is the default.
@@ -194,8 +211,8 @@ class Service {
   void CheckRoom(std::size_t commands) const;
 
  private:
-  /// What stands between the braces of an object.
-  static std::string Members(const Json& object);
+  /// After a change of the models.
+  void SetDefaults();
   void TakeIn(const JournalNews& news);
   /// The defaults with what the present preset sets.
   Parameters PresetValues() const;
@@ -229,11 +246,15 @@ class Service {
   std::uint64_t run_ = 0;
   std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;
   std::multimap<std::uint64_t, std::function<void()>> after_taken_;
+  Accepted accepted_;
+  Parameters defaults_;
+  std::shared_ptr<Recorder> recorder_;
   History history_;
   std::deque<std::string> events_;
-  std::vector<Sample> news_;  ///< events since the last Drain()
-  /// Of the newest frame; empty again with every frame and request to the control thread.
-  std::map<std::string, Sample, std::less<>> topics_;
+  std::vector<Sample> news_;                           ///< events since the last Drain()
+  std::map<std::string, Sample, std::less<>> topics_;  ///< as Topic() gives them
+  StatusText status_;
+  std::uint64_t jobs_written_ = 0;  ///< JobTable::changes() as status_ has them
   std::shared_ptr<const Incident> incident_;
   Json incident_summary_;
   std::string incident_file_;  ///< the record of the last one; empty: it could not be written

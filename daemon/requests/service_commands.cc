@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "daemon/requests/service.h"
 
@@ -16,6 +17,13 @@ constexpr std::size_t kReserve = 1000;  // commands that end something are taken
 /// The row of the parameter that a command sets.
 const ParameterInfo& RowOf(const Command& command) {
   return ParameterTable()[static_cast<std::size_t>(command.parameter)];
+}
+
+/// Whether the command changes nothing, not even the sign of a zero.
+bool HasValue(const Parameters& parameters, const Command& command) {
+  const Vector3d value = RowOf(command).get(parameters);
+  return !IsPreset(RowOf(command)) &&
+         std::memcmp(value.data(), command.value.data(), sizeof value) == 0;
 }
 
 }  // namespace
@@ -53,7 +61,7 @@ void Service::CheckAllowed(CommandType type) const {
 }
 
 void Service::OrderForJob(const JobRecord& job, std::vector<Command>* commands) const {
-  Parameters reached = accepted.parameters;
+  Parameters reached = accepted_.parameters;
   for (auto next = commands->begin(); next != commands->end(); ++next) {
     const auto verdict = [&](const Command& command) {
       Parameters then = reached;
@@ -77,21 +85,20 @@ std::uint64_t Service::SetParameters(std::vector<Command> commands) {
   std::ranges::stable_partition(commands, IsPreset, RowOf);
   if (const JobRecord* job = jobs_.Unfinished()) OrderForJob(*job, &commands);
   CheckMayPost(commands.size(), 0);
-  const Parameters before = accepted.parameters;
+  const Parameters before = accepted_.parameters;
   std::uint64_t barrier = 0;
   for (const Command& command : commands) {
     barrier = PostCommand(command);
-    SetParameter(&accepted.parameters, command);
+    if (!HasValue(accepted_.parameters, command)) SetParameter(&AcceptParameters(), command);
     config_.parameter_origins.erase(std::string(RowOf(command).name));
   }
   for (const ParameterInfo& info : ParameterTable())
-    if (info.get(before) != info.get(accepted.parameters))
+    if (info.get(before) != info.get(accepted_.parameters))
       config_.parameter_origins.erase(std::string(info.name));
   return barrier;
 }
 
 std::uint64_t Service::Post(ControlRequest request) {
-  topics_.clear();  // what is accepted shows in them
   const std::uint64_t number = control_.Post(std::move(request));
   if (number == 0)
     throw RpcException(ErrorCode::kBusy, "the command queue is full", "try again in a moment");
@@ -122,7 +129,7 @@ void Service::CheckRoom(std::size_t commands) const {
   if (control_.backlog() + commands > kMaxBacklog)
     throw RpcException(ErrorCode::kBusy,
                        fmt::format("{} commands are waiting for the next tick", kMaxBacklog),
-                       accepted.paused ? "regrasp step 1" : "try again in a moment");
+                       accepted_.paused ? "regrasp step 1" : "try again in a moment");
 }
 
 }  // namespace regrasp

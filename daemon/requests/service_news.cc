@@ -36,7 +36,7 @@ std::vector<Sample> Service::Drain() {
   for (const Published& published : frames) {
     if (published.run != newest_.run) history_.Clear();
     history_.Add(published.frame);
-    if (recorder) recorder->Add(published);
+    if (recorder_) recorder_->Add(published);
     newest_ = published;
   }
   for (const PublishedEvent& published : news) {
@@ -47,7 +47,7 @@ std::vector<Sample> Service::Drain() {
       if (event.kind == EventKind::kDropped || event.kind == EventKind::kFault)
         RecordIncident(event);
     }
-    if (recorder) recorder->Add(event, published.run);
+    if (recorder_) recorder_->Add(event, published.run);
     Json json = EventNewsJson(event, hand(), dt());
     if (json.contains("incident"))
       json["incident"] = incident_file_.empty() ? Json() : Json(incident_file_);
@@ -56,7 +56,7 @@ std::vector<Sample> Service::Drain() {
   SaveStateIfDue();
   if (fresh) {
     ++frame_number_;
-    topics_.clear();
+    ForgetTopics();
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double>(now - sample_.wall).count();
     if (elapsed > 0.25) {
@@ -92,15 +92,15 @@ void Service::Tell(const char* kind, const std::string& text) {
 }
 
 void Service::LookAfterRecorder() {
-  if (!recorder) return;
-  const Recorder::Numbers numbers = recorder->numbers();
+  if (!recorder_) return;
+  const Recorder::Numbers numbers = recorder_->numbers();
   if (numbers.failure.empty() && !numbers.full) return;
-  const std::string file = recorder->path().filename().string();
+  const std::string file = recorder_->path().filename().string();
   recording_end = numbers.full ? fmt::format("{} has {} MB, as much as one run file may have", file,
                                              numbers.bytes >> 20)
                                : fmt::format("{}: {}", file, numbers.failure);
   Tell(numbers.full ? "recording_full" : "recording_failed", recording_end);
-  const auto old = std::exchange(recorder, nullptr);
+  const auto old = SetRecorder(nullptr);
   if (!host_->Background([old] { old->Finish(); }, [] {})) old->Finish();
 }
 
@@ -125,19 +125,20 @@ void Service::TakeIn(const JournalNews& news) {
     case JournalNews::Kind::kBegin:
       journal_ = news.start->journal;
       run_ = news.run;
-      if (recorder) recorder->Begin(journal_, run_);
+      if (recorder_) recorder_->Begin(journal_, run_);
       config_.control.session.world = journal_.config.world;  // a checkpoint brings its own
       config_.control.session.model.scenario = journal_.config.model.scenario;
+      SetDefaults();
       if (!news.start->restored) break;
       config_.stepper_reason = "that of the checkpoint's run";
-      accepted.parameters = news.start->parameters;
-      accepted.noise = news.start->noise;
-      accepted.seed = news.start->seed;
+      AcceptParameters() = news.start->parameters;
+      Accept().noise = news.start->noise;
+      Accept().seed = news.start->seed;
       AcceptObject(std::make_shared<const ObjectModel>(journal_.config.model.object));
       break;
     case JournalNews::Kind::kCommand:
       journal_.entries.push_back(news.entry);
-      if (recorder) recorder->Add(news.entry, news.run);
+      if (recorder_) recorder_->Add(news.entry, news.run);
       break;
     case JournalNews::Kind::kMark:
       // What ended before the mark is known before whoever waits for the mark hears of it.
@@ -148,9 +149,9 @@ void Service::TakeIn(const JournalNews& news) {
   }
 }
 
-void Service::Mark(std::function<void(const JournalNews&)> told) {
+void Service::Mark(ControlRequest::Part part, std::function<void(const JournalNews&)> told) {
   CheckNotRestoring();
-  marks_.emplace(Post({.kind = ControlRequest::Kind::kMark}), std::move(told));
+  marks_.emplace(Post({.kind = ControlRequest::Kind::kMark, .part = part}), std::move(told));
 }
 
 void Service::AfterTaken(std::uint64_t request, std::function<void()> then) {
@@ -163,10 +164,10 @@ void Service::OnAcknowledged(std::uint64_t request) {
 }
 
 void Service::SaveStateIfDue() {
-  if (!recorder || !recorder->TakeStateDue(newest_)) return;
+  if (!recorder_ || !recorder_->TakeStateDue(newest_)) return;
   try {
-    Mark([this](const JournalNews& mark) {
-      if (recorder && mark.saved && !mark.saved->empty()) recorder->Add(mark);
+    Mark(ControlRequest::Part::kState, [this](const JournalNews& mark) {
+      if (recorder_ && mark.saved && !mark.saved->empty()) recorder_->Add(mark);
     });
   } catch (const RpcException&) {  // the queue is full: the next one will do
   }
@@ -178,8 +179,8 @@ void Service::RecordIncident(const Event& event) {
   source.frames = history_.Recent();
   source.events = history_.Events();
   source.job = newest_.frame.job;
-  source.parameters = accepted.parameters;
-  source.object = accepted.object->name;
+  source.parameters = accepted_.parameters;
+  source.object = accepted_.object->name;
   source.dt = dt();
   const auto incident = std::make_shared<const Incident>(MakeIncident(source, hand()));
   const auto record = FreeFile(config_.output_dir, IncidentName(event.tick), ".json");

@@ -48,29 +48,30 @@ Outcome Shape(Service& service, const Params& params, Client&) {
   service.CheckNotFaulted();
   Outcome outcome;
   outcome.begin = [&service, with_mesh = params.Bool("mesh", false),
-                   object = service.accepted.object](Done done) {
-    service.Mark([&service, with_mesh, object, done](const JournalNews& mark) {
-      const auto make = [felt = mark.felt, with_mesh, object, tick = mark.entry.tick,
-                         dt = service.dt()]() -> Json {
-        const TrueSurface truth(*object);
-        Json json = {
-            {"tick", tick},
-            {"time_s", static_cast<double>(tick) * dt},
-            {"object", object->name},
-            {"touched_fraction", felt->touched_share()},
-            {"touched_cells", felt->touched_cells()},
-            {"cells", FeltSurface::kCells},
-            {"mean_radius_m", felt->touched_cells() > 0 ? Json(felt->mean_radius()) : Json()},
-            {"truth", TruthJson(*felt, truth)}};
-        if (with_mesh) json["mesh"] = MeshJson(*felt, truth);
-        return json;
-      };
-      try {
-        Later(service, make).begin(done);
-      } catch (const RpcException& e) {
-        done({}, &e.error());
-      }
-    });
+                   object = service.accepted().object](Done done) {
+    service.Mark(
+        ControlRequest::Part::kFelt, [&service, with_mesh, object, done](const JournalNews& mark) {
+          const auto make = [felt = mark.felt, with_mesh, object, tick = mark.entry.tick,
+                             dt = service.dt()]() -> Json {
+            const TrueSurface truth(*object);
+            Json json = {
+                {"tick", tick},
+                {"time_s", static_cast<double>(tick) * dt},
+                {"object", object->name},
+                {"touched_fraction", felt->touched_share()},
+                {"touched_cells", felt->touched_cells()},
+                {"cells", FeltSurface::kCells},
+                {"mean_radius_m", felt->touched_cells() > 0 ? Json(felt->mean_radius()) : Json()},
+                {"truth", TruthJson(*felt, truth)}};
+            if (with_mesh) json["mesh"] = MeshJson(*felt, truth);
+            return json;
+          };
+          try {
+            Later(service, make).begin(done);
+          } catch (const RpcException& e) {
+            done({}, &e.error());
+          }
+        });
   };
   return outcome;
 }

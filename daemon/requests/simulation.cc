@@ -34,14 +34,14 @@ Outcome Stop(Service& service, const Params&, Client&) {
 
 Outcome Pause(Service& service, const Params&, Client&) {
   const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kPause});
-  service.accepted.paused = true;
+  service.Accept().paused = true;
   return ClockAnswer(service, barrier);
 }
 
 Outcome Resume(Service& service, const Params&, Client&) {
   service.CheckNotFaulted();
   const std::uint64_t barrier = service.Post({.kind = ControlRequest::Kind::kResume});
-  service.accepted.paused = false;
+  service.Accept().paused = false;
   return ClockAnswer(service, barrier);
 }
 
@@ -50,9 +50,9 @@ Outcome Step(Service& service, const Params& params, Client&) {
   service.CheckNotFaulted();
   const JobRecord* job = service.jobs().Unfinished();
   const bool until_job_ends = params.Bool("until_job_ends", false);
-  if (!service.accepted.paused && service.clock() == ClockMode::kContinuous)
+  if (!service.accepted().paused && service.clock() == ClockMode::kContinuous)
     throw RpcException(ErrorCode::kBadState, "the simulation is not paused", "regrasp pause");
-  if (!service.accepted.paused && job)
+  if (!service.accepted().paused && job)
     throw RpcException(ErrorCode::kBusy,
                        fmt::format("time advances by itself: job {} is running", job->id),
                        fmt::format("regrasp job wait {}", job->id));
@@ -87,18 +87,18 @@ std::uint64_t PostReset(Service& service, std::uint64_t seed,
   request.seed = seed;
   request.object = object;
   const std::uint64_t barrier = service.Post(std::move(request));
-  Service::Accepted& accepted = service.accepted;
-  accepted.seed = seed;
-  accepted.parameters = ParametersAfterReset(accepted.parameters, object.get());
+  service.Accept().seed = seed;
+  Parameters& parameters = service.AcceptParameters();
+  parameters = ParametersAfterReset(parameters, object.get());
   if (object) service.AcceptObject(object);
   return barrier;
 }
 
 Json ResetAnswer(const Service& service) {
-  return {{"seed", service.accepted.seed},
-          {"object", service.accepted.object->name},
+  return {{"seed", service.accepted().seed},
+          {"object", service.accepted().object->name},
           {"changed_parameters", service.ChangedParameters()},
-          {"warnings", service.accepted.warnings}};
+          {"warnings", service.accepted().warnings}};
 }
 
 /// The file is read by the worker thread: a mesh may take seconds.
@@ -123,6 +123,7 @@ void LoadAndReset(Service& service, std::uint64_t seed, const std::string& name,
       PostReset(service, seed, loaded->object);
       // Answered when the reset has been taken and what follows it is known.
       service.Mark(
+          ControlRequest::Part::kNothing,
           [done, answer = ResetAnswer(service)](const JournalNews&) { done(answer, nullptr); });
     } catch (const RpcException& e) {
       done({}, &e.error());
@@ -139,7 +140,7 @@ void LoadAndReset(Service& service, std::uint64_t seed, const std::string& name,
 Outcome Reset(Service& service, const Params& params, Client&) {
   service.CheckNotRestoring();
   const auto seed = static_cast<std::uint64_t>(
-      params.Integer("seed", static_cast<std::int64_t>(service.accepted.seed)));
+      params.Integer("seed", static_cast<std::int64_t>(service.accepted().seed)));
   Outcome outcome;
   if (params.Has("object")) {
     outcome.begin = [&service, seed, name = params.String("object")](Done done) {
@@ -163,12 +164,12 @@ Outcome Push(Service& service, const Params& params, Client&) {
 }
 
 Outcome NoiseGet(Service& service, const Params&, Client&) {
-  return {.result = NoiseJson(service.accepted.noise)};
+  return {.result = NoiseJson(service.accepted().noise)};
 }
 
 Outcome NoiseSet(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kNoise);
-  NoiseLevels levels = service.accepted.noise;
+  NoiseLevels levels = service.accepted().noise;
   if (params.Has("preset")) levels = *NoisePreset(params.String("preset"));
   constexpr std::pair<const char*, double NoiseLevels::*> kLevels[] = {
       {"position_m", &NoiseLevels::position_m},
@@ -191,7 +192,7 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
   Command command = Of(CommandType::kNoise);
   command.noise = levels;
   const std::uint64_t barrier = service.PostCommand(std::move(command));
-  service.accepted.noise = levels;
+  service.Accept().noise = levels;
   return {.result = NoiseJson(levels), .barrier = barrier};
 }
 

@@ -74,14 +74,16 @@ double TorqueScale(const std::vector<GraspContact>& contacts) {
   return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
 }
 
-/// Every measure of stability: what the frame has, and what is too slow for the simulation; null
-/// where it is not known.
-void AddMeasures(const Frame& frame, const std::vector<GraspContact>& contacts, Json* json) {
+/// Every measure of stability: what the frame has, and `on_request` what is too slow for the
+/// simulation; null where it is not known.
+void AddMeasures(const Frame& frame, const std::vector<GraspContact>& contacts, bool on_request,
+                 Json* json) {
   MeasureInput input(contacts, TorqueScale(contacts), kMonitorEdges);
   Json names = Json::array();
   for (const MeasureInfo& info : kMeasureTable) {
-    names.push_back(info.name);
     const bool here = info.cost == MeasureCost::kOnRequest;
+    if (here && !on_request) continue;
+    names.push_back(info.name);
     (*json)[std::string(info.name)] = !here              ? Json(frame.stability.of(info.id))
                                       : contacts.empty() ? Json()
                                                          : Json(info.compute(input));
@@ -133,7 +135,8 @@ Json JointsJson(const Frame& frame, const HandModel& hand) {
   return {{"tick", frame.tick}, {"time_s", frame.time_s}, {"joints", std::move(joints)}};
 }
 
-Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters) {
+Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters,
+                 bool on_request) {
   const std::vector<GraspContact> holding = HoldingContacts(frame, parameters);
   const StabilityFrame& s = frame.stability;
   Json fingers = Json::object();
@@ -158,7 +161,7 @@ Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& pa
                {"stability_measure", InfoOf(s.measure).name},
                {"threshold", s.threshold},
                {"load_margin_n", s.load_margin}};
-  AddMeasures(frame, holding, &json);
+  AddMeasures(frame, holding, on_request, &json);
   json["torque_scale_m"] = holding.empty() ? Json() : Json(TorqueScale(holding));
   json["exploration"] = std::move(exploration);
   json["fingers"] = std::move(fingers);

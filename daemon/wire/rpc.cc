@@ -182,9 +182,9 @@ RpcError InternalError(const std::exception& e) {
 }
 
 std::string ResultText(const std::optional<RequestId>& id, std::string_view result) {
-  std::string text = R"({"jsonrpc":"2.0","id":)" + ToText(IdJson(id)) + R"(,"result":)";
-  text += result;
-  return text += '}';
+  const auto* number = id ? std::get_if<std::int64_t>(&*id) : nullptr;
+  return fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})",
+                     number ? std::to_string(*number) : ToText(IdJson(id)), result);
 }
 
 Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error) {

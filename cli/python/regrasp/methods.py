@@ -229,14 +229,16 @@ class Methods:
         """
         return self._ask("push", {"force_n": force_n, "duration_s": duration_s})
 
-    def quality(self) -> dict:
+    def quality(self, measures: str | None = None) -> dict:
         """Quality of the grasp.
+        measures: all, or frame: only those that every frame has, for who asks often; one of all, frame; left out:
+            all.
         Returns tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, measures: [NAME]
             and the value of each by its name, torque_scale_m (mean distance of the contacts from the object's
             centre; torques are divided by it), fingers: {NAME: {manipulability, load_margin_without_n,
             joint_limit_margin_rad}}.
         """
-        return self._ask("quality", {})
+        return self._ask("quality", {"measures": measures})
 
     def record_list(self) -> dict:
         """The run files in the output directory.
