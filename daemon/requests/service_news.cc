@@ -191,6 +191,7 @@ void Service::RecordIncident(const Event& event) {
                        {"seed", newest_.frame.seed}, {"cause", incident->cause},
                        {"record", record.string()},  {"picture", picture.string()}};
   if (incident->job.id != 0) job_incidents_[incident->job.id] = incident_summary_;
+  status_.Forget();
   if (job_incidents_.size() > JobTable::kKept) job_incidents_.erase(job_incidents_.begin());
   spdlog::warn("{}", incident->cause);
   try {
