@@ -83,6 +83,16 @@ class Checker {
     return name;
   }
 
+  /// Where a reader may take the first and another the last.
+  /// `name`: of which there may be one; null: of any.
+  static void AllowOne(const XMLElement& node, const char* name, const UrdfValues& values) {
+    const XMLElement* first = node.FirstChildElement(name);
+    const XMLElement* second = first == nullptr ? nullptr : first->NextSiblingElement(name);
+    if (second != nullptr)
+      values.Add(second->GetLineNum(), "a second <{}> in <{}>; allowed is one", second->Name(),
+                 node.Name());
+  }
+
   void CheckLink(XMLElement* node) {
     const std::string name = NameOf(*node, &link_index_);
     const UrdfValues values(LinkElement(name), problems_);
@@ -105,6 +115,7 @@ class Checker {
     values.Origin(node);
     XMLElement* mass = node->FirstChildElement("mass");
     XMLElement* inertia = node->FirstChildElement("inertia");
+    for (const char* once : {"origin", "mass", "inertia"}) AllowOne(*node, once, values);
     if (mass == nullptr) values.Add(node->GetLineNum(), "<inertial> has no <mass>");
     if (inertia == nullptr) values.Add(node->GetLineNum(), "<inertial> has no <inertia>");
     if (mass != nullptr) values.Number(mass, "value");
@@ -116,6 +127,7 @@ class Checker {
   void CheckCollision(XMLElement* node, const UrdfValues& values) {
     values.Origin(node);
     KeepOnly(node, {"origin", "geometry"});
+    for (const char* once : {"origin", "geometry"}) AllowOne(*node, once, values);
     XMLElement* geometry = node->FirstChildElement("geometry");
     XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
     if (shape == nullptr)
@@ -123,6 +135,7 @@ class Checker {
                         "<collision> has no <geometry> with a shape; allowed are sphere, box, "
                         "cylinder, mesh");
     CheckShape(shape, values);
+    AllowOne(*geometry, nullptr, values);
   }
 
   void CheckShape(XMLElement* node, const UrdfValues& values) {

@@ -106,7 +106,11 @@ void UrdfValues::Origin(Element* node) const {
     Add(origin->GetLineNum(), "<{}> <origin> quat_xyzw is not of URDF 1.0; must be rpy [rad]",
         node->Name());
   const Vector3d p = Vector(origin, "xyz", Vector3d::Zero());
-  Vector(origin, "rpy", Vector3d::Zero());
+  constexpr double kMostTurn = 6.3;  // a whole turn; more is meant in degrees [rad]
+  for (const double angle : Vector(origin, "rpy", Vector3d::Zero()))
+    if (std::abs(angle) > kMostTurn)
+      Add(origin->GetLineNum(), "<{}> <origin> rpy = {:.6g}; allowed {:g} .. {:g} rad",
+          node->Name(), angle, -kMostTurn, kMostTurn);
   for (const double c : p)
     if (std::abs(c) > kMaxModelSize)
       Add(origin->GetLineNum(), "<{}> <origin> xyz = {:.6g}; allowed {:g} .. {:g} m", node->Name(),
