@@ -149,7 +149,8 @@ inline constexpr std::array kInspectRows = {
                {},
                false,
                "version, protocol, state, paused, clock (continuous, lockstep), "
-               "advancing (time goes on now), tick, time_s, state_hash, real_time_factor, "
+               "advancing (time goes on now), tick, time_s, state_hash, "
+               "real_time_factor (null while time stands still, or not known yet), "
                "speed, stepper, tick_p99_s, seed, hand, object, warnings, job, gait: {active, "
                "phase, finger, state, "
                "reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, "

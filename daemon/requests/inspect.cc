@@ -19,6 +19,7 @@ Json StatusJson(Service& service) {
   if (const JobRecord* known = service.jobs().Find(frame.job.id)) job = service.JobAnswer(*known);
   if (const JobRecord* pending = service.jobs().Unfinished()) job = service.JobAnswer(*pending);
   const double speed = service.speed();
+  const std::optional<double> speed_now = service.real_time_factor();
   const auto uptime = std::chrono::steady_clock::now() - service.started();
   return {
       {"version", Version()},
@@ -31,7 +32,7 @@ Json StatusJson(Service& service) {
       {"time_s", frame.time_s},
       {"dt_s", service.dt()},
       {"state_hash", HashText(frame.state_hash)},
-      {"real_time_factor", service.real_time_factor()},
+      {"real_time_factor", speed_now ? Json(*speed_now) : Json()},
       {"tick_p99_s", service.control().tick_p99()},
       {"lateness_p99_s", service.control().lateness_p99()},
       {"speed", std::isinf(speed) ? Json("max") : Json(speed)},
