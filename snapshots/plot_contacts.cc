@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kMm = 1e3;
 constexpr std::size_t kMostPointsDrawn = 5000;
+constexpr double kTop = 100, kNarrowHeight = 1080;  // of the sheet
 
 struct Contact {
   int finger = 0;
@@ -233,35 +234,151 @@ void DrawCube(Canvas* canvas, const View& view, const Axis& axis) {
   }
 }
 
-/// Scale of the colours and figures of the felt surface; returns where the column goes on.
-double DrawFeltFacts(Canvas* canvas, Point2 at, const FeltPicture& picture) {
-  canvas->Text({at.x, at.y + 10}, "surface as felt", {.size = 18, .bold = true});
-  double y = at.y + 34;
-  constexpr int kSteps = 40;
-  constexpr double kWidth = 200, kHeight = 16;
-  for (int i = 0; i < kSteps; ++i)
-    canvas->FillBox({at.x + i * kWidth / kSteps, y, kWidth / kSteps + 0.5, kHeight},
-                    ErrorColour(2.0 * i / (kSteps - 1) - 1));
-  y += kHeight + 16;
+/// Scale of the colours and figures of the felt surface.
+std::vector<LegendEntry> FeltFacts(const FeltPicture& picture) {
   const double scale = picture.scale * kMm;
-  canvas->Text({at.x, y}, fmt::format("−{:.1f}", scale), {.size = 17});
-  canvas->Text({at.x + kWidth / 2, y}, "0", {.size = 17, .align_x = AlignX::kCentre});
-  canvas->Text({at.x + kWidth, y}, fmt::format("{:.1f} mm", scale),
-               {.size = 17, .align_x = AlignX::kRight});
-  y += 28;
+  std::vector<LegendEntry> facts = {
+      {fmt::format("−{:.1f} to {:.1f} mm off", scale, scale), [](Canvas* c, Point2 m) {
+         constexpr int kSteps = 22;
+         for (int i = 0; i < kSteps; ++i)
+           c->FillBox({m.x - 22 + 44.0 * i / kSteps, m.y - 8, 44.0 / kSteps + 0.5, 16},
+                      ErrorColour(2.0 * i / (kSteps - 1) - 1));
+       }}};
   const ShapeErrors& judged = picture.judged;
-  std::vector<std::string> facts = {fmt::format("touched  {:.0f} % of it", 100 * judged.touched)};
+  facts.push_back({fmt::format("touched  {:.0f} % of it", 100 * judged.touched), {}});
   if (judged.cells > 0) {
-    facts.push_back(fmt::format("rms error  {:.2f} mm", judged.rms_m * kMm));
-    facts.push_back(fmt::format("bias  {:.2f} mm", judged.mean_m * kMm));
+    facts.push_back({fmt::format("rms error  {:.2f} mm", judged.rms_m * kMm), {}});
+    const double bias = judged.mean_m * kMm;
+    facts.push_back({fmt::format("bias  {:.2f} mm", std::abs(bias) < 0.005 ? 0 : bias), {}});
     facts.push_back(
-        fmt::format("normals off by  {:.1f}°", judged.normal_rad * 180 / std::numbers::pi));
+        {fmt::format("normals off by  {:.1f}°", judged.normal_rad * 180 / std::numbers::pi), {}});
   }
-  for (const std::string& fact : facts) {
-    canvas->Text({at.x, y}, fact, {.size = 18});
-    y += 26;
+  return facts;
+}
+
+std::vector<LegendEntry> FitFacts(const std::optional<SphereFit>& fit, const ObjectModel& object) {
+  if (!fit) return {{"the points do not", {}}, {"determine a sphere", {}}};
+  std::vector<LegendEntry> facts = {
+      {fmt::format("radius  {:.2f} mm", fit->radius * kMm), {}},
+      {fmt::format("rms error  {:.2f} mm", fit->rms_error * kMm), {}},
+      {fmt::format("centre off by  {:.2f} mm", fit->centre.norm() * kMm), {}}};
+  if (object.kind == ObjectModel::Kind::kSphere)
+    facts.push_back({fmt::format("true radius  {:.2f} mm", object.radius * kMm), {}});
+  return facts;
+}
+
+/// What is drawn.
+struct Content {
+  Cloud cloud;
+  std::optional<FeltPicture> felt;
+  std::optional<SphereFit> fit;
+  bool about_sphere = false;  ///< the surface says more than a sphere, unless it is one
+};
+
+std::vector<LegendGroup> Legends(const Content& content, const HandModel& hand,
+                                 const ObjectModel& object) {
+  std::vector<LegendEntry> fingers;
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    const FingerLook look = LookOfFinger(f);
+    fingers.push_back(MarkEntry(fmt::format("{}  {}", FingerName(hand, f), content.cloud.count[f]),
+                                look.marker, look.colour));
   }
-  return y;
+  const std::vector<LegendEntry> marks = {
+      {"first contact", [](Canvas* c, Point2 m) { c->Mark(Marker::kDisc, m, 6.5, kInk, kWhite); }},
+      {"newest contact", [](Canvas* c, Point2 m) { c->Mark(Marker::kDisc, m, 6.5, kInk, kGrey); }},
+      {"on the near side", [](Canvas* c, Point2 m) { c->Disc(m, 3.5, kBlue); }},
+      {"on the far side", [](Canvas* c, Point2 m) { c->Disc(m, 3.5, Tint(kBlue, 0.62)); }}};
+  std::vector<LegendEntry> shapes = {LineEntry("true outline", {Colour{120, 120, 120}, 2})};
+  if (content.fit) shapes.push_back(LineEntry("sphere fit", {kInk, 1.8, {9, 6}}));
+  std::vector<LegendGroup> groups = {
+      {"finger, points", fingers, kTop + 10}, {"", marks}, {"", shapes}};
+  if (content.felt) groups.push_back({"surface as felt", FeltFacts(*content.felt)});
+  if (content.about_sphere)
+    groups.push_back({"least-squares sphere", FitFacts(content.fit, object)});
+  std::vector<LegendEntry> count = {
+      {fmt::format("{} points", content.cloud.points.size()), {}, kInk, true}};
+  if (content.cloud.stride > 1)
+    count.push_back({fmt::format("one in {} drawn", content.cloud.stride), {}, kGrey});
+  groups.push_back({"", count});
+  return groups;
+}
+
+/// Where the perspective view and the two flat ones go.
+struct Places {
+  Box big;
+  std::array<Box, 2> flats;
+  Places(const Canvas& canvas, const Layout& layout, double top) {
+    if (canvas.narrow()) {
+      const double left = 66, gap = 14;
+      const double edge = (canvas.width() - 2 * left - 2 * gap) / 2;
+      for (int i = 0; i < 2; ++i)
+        flats[i] = {left + i * (edge + left + gap), layout.bottom - edge, edge, edge};
+      big = {-10, top - 10, canvas.width(), flats[0].y + 10 - top};
+      return;
+    }
+    const double edge = (canvas.height() - 110 - 2 * 92) / 2;  // of a square panel
+    const double right = layout.left + layout.width;
+    for (int i = 0; i < 2; ++i) flats[i] = {right - edge, 106 + i * (edge + 92), edge, edge};
+    big = {20, kTop, flats[0].x - 120, canvas.height() - 110};
+  }
+};
+
+void DrawPerspective(Canvas* canvas, const Box& box, const Content& content, const Axis& axis,
+                     const ObjectMesh& mesh, std::span<const SurfaceLine> lines) {
+  canvas->Clip({0, box.y, box.br().x + 20, canvas->height() - box.y});
+  View view = MakeView({-0.85, -1.2, 0.72}, Vector3d::UnitZ(), {0, 0}, 1);
+  Range across, down;  // of the cube's corners, at 1 unit per mm
+  for (int i = 0; i < 8; ++i) {
+    const Point2 corner =
+        view.At(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) * axis.hi / kMm);
+    across.Add(corner.x);
+    down.Add(corner.y);
+  }
+  // Room for tick values and names: 90 on the left and below.
+  view.per_mm = std::min((box.width - 100) / (across.hi - across.lo),
+                         (box.height - 100) / (down.hi - down.lo));
+  view.centre = {box.x + 95 + (box.width - 100) / 2, box.y + 10 + (box.height - 100) / 2};
+  DrawCube(canvas, view, axis);
+  DrawCloud(canvas, view, content.cloud, mesh, lines, content.fit, content.felt ? 1.6 : 3.0,
+            content.felt ? &*content.felt : nullptr);
+  canvas->Unclip();
+}
+
+void DrawFlat(Canvas* canvas, const Box& box, int which, const Content& content, const Axis& axis,
+              const ObjectMesh& mesh, std::span<const SurfaceLine> lines) {
+  struct Flat {
+    Vector3d to_viewer, up;
+    const char *x, *y, *title;
+  };
+  static const std::array<Flat, 2> kFlats = {
+      Flat{Vector3d::UnitZ(), Vector3d::UnitY(), "x [mm]", "y [mm]", "seen from +z"},
+      Flat{-Vector3d::UnitY(), Vector3d::UnitZ(), "x [mm]", "z [mm]", "seen from −y"}};
+  const Flat& flat = kFlats[static_cast<std::size_t>(which)];
+  const Panel panel{box, axis, axis};
+  DrawGrid(canvas, panel, true);
+  canvas->Text({box.x + box.width / 2, box.br().y + 36}, flat.x,
+               {.size = 20, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
+  canvas->Text({box.x - (canvas->narrow() ? 52 : 64), box.y + box.height / 2}, flat.y,
+               {.size = 20, .align_x = AlignX::kCentre, .upwards = true});
+  canvas->Clip(box);
+  DrawCloud(canvas,
+            MakeView(flat.to_viewer, flat.up, panel.At(0, 0), box.width / (axis.hi - axis.lo)),
+            content.cloud, mesh, lines, content.fit, 2.2);
+  canvas->Unclip();
+  canvas->Text(canvas->narrow() ? Point2(box.x, box.y - 14) : Point2(box.x + 10, box.y + 18),
+               flat.title, {.size = 17, .colour = kGrey, .halo = 2});
+  DrawFrame(canvas, panel);
+}
+
+/// Half the edge of the cube that is drawn [mm]: it holds the object and nearly all points.
+double HalfOf(std::span<const Vector3d> points, const ObjectModel& object) {
+  std::vector<double> sizes;
+  for (const Vector3d& p : points) sizes.push_back(p.cwiseAbs().maxCoeff());
+  const auto nearly_all =
+      sizes.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sizes.size()) * 0.999);
+  std::nth_element(sizes.begin(), nearly_all, sizes.end());
+  const double reach = std::max(object.bounding_radius, *nearly_all);
+  return std::min(1.16 * reach, 3 * object.bounding_radius) * kMm;
 }
 
 }  // namespace
@@ -269,126 +386,33 @@ double DrawFeltFacts(Canvas* canvas, Point2 at, const FeltPicture& picture) {
 void PlotContacts(std::span<const Frame> history, const HandModel& hand, const ObjectModel& object,
                   const PlotOptions& options, const std::string& path, const FeltSurface* felt) {
   const auto frames = Newest(history, options.last_s, path);
-  const Cloud cloud = Collect(frames, hand);
-  if (cloud.points.empty())
+  Content content;
+  content.cloud = Collect(frames, hand);
+  if (content.cloud.points.empty())
     throw std::runtime_error(path + ": nothing to draw: no finger held the object in these frames");
   std::vector<Vector3d> points;
-  for (const Contact& contact : cloud.points) points.push_back(contact.p_OC);
-  std::optional<FeltPicture> picture;
-  if (felt != nullptr && felt->touched_cells() > 0) picture = PictureOf(*felt, object);
-  const bool round = object.kind == ObjectModel::Kind::kSphere;
-  const auto fit = round || !picture ? FitSphere(points) : std::nullopt;
+  for (const Contact& contact : content.cloud.points) points.push_back(contact.p_OC);
+  if (felt != nullptr && felt->touched_cells() > 0) content.felt = PictureOf(*felt, object);
+  content.about_sphere = object.kind == ObjectModel::Kind::kSphere || !content.felt;
+  if (content.about_sphere) content.fit = FitSphere(points);
 
-  Canvas canvas(SizeOf(options), path);
+  Canvas canvas(SizeOf(options, kNarrowHeight), path);
   const ObjectMesh mesh = MeshOf(object);
   const auto lines = ShapeLines(mesh);
-  DrawTitle(
+  const double top = DrawTitle(
       &canvas,
       options.title.empty() ? "Contact points in the object's frame, as sensed" : options.title,
       Facts(frames, hand, object.name));
-
-  double reach = object.bounding_radius;
-  std::vector<double> sizes;
-  for (const Vector3d& p : points) sizes.push_back(p.cwiseAbs().maxCoeff());
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 0.999),
-                   sizes.end());
-  reach = std::max(reach, sizes[static_cast<std::size_t>(sizes.size() * 0.999)]);
-  const double half = std::min(1.16 * reach, 3 * object.bounding_radius) * kMm;
-  Axis axis = NiceAxis(-half, half, 5, false, "");
-
-  const double side_width = 250, height = canvas.height();
-  const double small = (height - 110 - 2 * 92) / 2;  // edge of a square panel
-  const double right = canvas.width() - side_width;
-  const Box big(20, 100, right - small - 110 - 20, height - 110);
-  canvas.Clip({0, 0, right - small - 90, height});
-  View view = MakeView({-0.85, -1.2, 0.72}, Vector3d::UnitZ(), {0, 0}, 1);
-  Range across, down;  // of the cube's corners, at 1 unit per mm
-  for (int i = 0; i < 8; ++i) {
-    const Point2 corner =
-        view.At(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) * half / kMm);
-    across.Add(corner.x);
-    down.Add(corner.y);
-  }
-  // Room for tick values and names: 90 on the left and below.
-  view.per_mm = std::min((big.width - 100) / (across.hi - across.lo),
-                         (big.height - 100) / (down.hi - down.lo));
-  view.centre = {big.x + 95 + (big.width - 100) / 2, big.y + 10 + (big.height - 100) / 2};
-  DrawCube(&canvas, view, axis);
-  DrawCloud(&canvas, view, cloud, mesh, lines, fit, picture ? 1.6 : 3.0,
-            picture ? &*picture : nullptr);
-  canvas.Unclip();
-
-  struct Flat {
-    Vector3d to_viewer, up;
-    const char *x, *y, *title;
-  };
-  const std::array<Flat, 2> flats = {
-      Flat{Vector3d::UnitZ(), Vector3d::UnitY(), "x [mm]", "y [mm]", "seen from +z"},
-      Flat{-Vector3d::UnitY(), Vector3d::UnitZ(), "x [mm]", "z [mm]", "seen from −y"}};
-  for (int i = 0; i < 2; ++i) {
-    Panel panel{{right - small - 10, 106 + i * (small + 92), small, small}, axis, axis};
-    panel.x.label.clear();
-    panel.y.label.clear();
-    DrawGrid(&canvas, panel, true);
-    canvas.Text({panel.area.x + small / 2, panel.area.br().y + 36}, flats[i].x,
-                {.size = 20, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
-    canvas.Text({panel.area.x - 64, panel.area.y + small / 2}, flats[i].y,
-                {.size = 20, .align_x = AlignX::kCentre, .upwards = true});
-    canvas.Clip(panel.area);
-    DrawCloud(&canvas,
-              MakeView(flats[i].to_viewer, flats[i].up, panel.At(0, 0), small / (2 * half)), cloud,
-              mesh, lines, fit, 2.2);
-    canvas.Unclip();
-    canvas.Text({panel.area.x + 10, panel.area.y + 18}, flats[i].title,
-                {.size = 17, .colour = kGrey, .halo = 2});
-    DrawFrame(&canvas, panel);
-  }
-
-  const double side = right + 20;
-  std::vector<LegendEntry> entries;
-  for (int f = 0; f < hand.num_fingers(); ++f) {
-    const FingerLook look = LookOfFinger(f);
-    entries.push_back(MarkEntry(fmt::format("{}  {}", FingerName(hand, f), cloud.count[f]),
-                                look.marker, look.colour));
-  }
-  double y = DrawLegend(&canvas, {side, 110}, "finger, points", entries) + 10;
-  const std::array<LegendEntry, 4> marks = {
-      LegendEntry{"first contact",
-                  [](Canvas* c, Point2 m) { c->Mark(Marker::kDisc, m, 6.5, kInk, kWhite); }},
-      LegendEntry{"newest contact",
-                  [](Canvas* c, Point2 m) { c->Mark(Marker::kDisc, m, 6.5, kInk, kGrey); }},
-      LegendEntry{"on the near side", [](Canvas* c, Point2 m) { c->Disc(m, 3.5, kBlue); }},
-      LegendEntry{"on the far side",
-                  [](Canvas* c, Point2 m) { c->Disc(m, 3.5, Tint(kBlue, 0.62)); }}};
-  y = DrawLegend(&canvas, {side, y}, "", marks) + 10;
-  std::vector<LegendEntry> shapes = {LineEntry("true outline", {Colour{120, 120, 120}, 2})};
-  if (fit) shapes.push_back(LineEntry("sphere fit", {kInk, 1.8, {9, 6}}));
-  y = DrawLegend(&canvas, {side, y}, "", shapes) + 18;
-  if (picture) y = DrawFeltFacts(&canvas, {side, y}, *picture) + 12;
-  std::vector<std::string> facts;
-  if (picture && !round) {
-    // The surface says more than a sphere.
-  } else if (fit) {
-    facts = {fmt::format("radius  {:.2f} mm", fit->radius * kMm),
-             fmt::format("rms error  {:.2f} mm", fit->rms_error * kMm),
-             fmt::format("centre off by  {:.2f} mm", fit->centre.norm() * kMm)};
-    if (round) facts.push_back(fmt::format("true radius  {:.2f} mm", object.radius * kMm));
-  } else {
-    facts = {"the points do not", "determine a sphere"};
-  }
-  if (!facts.empty()) {
-    canvas.Text({side, y + 10}, "least-squares sphere", {.size = 18, .bold = true});
-    y += 40;
-  }
-  for (const std::string& fact : facts) {
-    canvas.Text({side, y}, fact, {.size = 18});
-    y += 26;
-  }
-  y += 14;
-  canvas.Text({side, y}, fmt::format("{} points", points.size()), {.size = 18, .bold = true});
-  if (cloud.stride > 1)
-    canvas.Text({side, y + 26}, fmt::format("one in {} drawn", cloud.stride),
-                {.size = 17, .colour = kGrey});
+  const std::vector<LegendGroup> legends = Legends(content, hand, object);
+  const Layout layout(canvas, legends);
+  layout.DrawLegends(&canvas, legends);
+  const Places places(canvas, layout, top);
+  const double half = HalfOf(points, object);
+  const Axis axis = NiceAxis(-half, half, 5, false, "");
+  DrawPerspective(&canvas, places.big, content, axis, mesh, lines);
+  const Axis flat = canvas.narrow() ? NiceAxis(-half, half, 3, false, "") : axis;
+  for (int i = 0; i < 2; ++i)
+    DrawFlat(&canvas, places.flats[static_cast<std::size_t>(i)], i, content, flat, mesh, lines);
   canvas.Save();
 }
 

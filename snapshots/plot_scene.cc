@@ -104,11 +104,12 @@ class ViewPainter {
               const Vector3d& to_viewer, const Vector3d& up)
       : canvas_(canvas), box_(box) {
     const cv::Size size = canvas->PixelsOf(box);
-    // Room above for names and directions, below for the scales.
-    const double unit = canvas->scale();
-    camera_ = FitCamera(bodies, to_viewer, up, size - cv::Size(0, static_cast<int>(120 * unit)),
-                        34 * unit);
-    camera_.centre_y_px += 46 * unit;
+    // Room above for names and directions, below for the scales; a narrow sheet has it at the
+    // sides.
+    const double unit = canvas->scale(), above = canvas->narrow() ? 40 : 106, below = 14;
+    camera_ = FitCamera(bodies, to_viewer, up,
+                        size - cv::Size(0, static_cast<int>((above + below) * unit)), 34 * unit);
+    camera_.centre_y_px += above * unit;
     const cv::Mat picture = Render(bodies, camera_, size);
     canvas->Paste(picture, box);
     cv::Mat grey;
@@ -330,7 +331,7 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
                 Facts({&frame, 1}, hand, object.name));
   const Forces forces = ForcesOf(frame, hand);
   const std::vector<LegendGroup> legends = Legends(frame, hand, forces, in_view);
-  const Layout layout(*canvas, legends, 0);
+  const Layout layout(*canvas, legends, kNarrowGap);
   layout.DrawLegends(canvas, legends);
 
   const std::vector<Body> bodies = Bodies(frame, hand, object);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "snapshots/axes.h"
@@ -12,6 +13,8 @@ namespace {
 constexpr double kTop = 180, kBottom = 100, kLeft = 130, kRight = 40;
 constexpr double kGapX = 60, kGapY = 90, kPanelHeight = 300;
 constexpr std::size_t kMostColumns = 3;
+// On a narrow sheet one below the other, the levels written below the last.
+constexpr double kNarrowTop = 104, kNarrowBottom = 190, kNarrowGap = 36, kNarrowPanel = 105;
 constexpr double kSpread = 0.62;  // of a category's width, over which its marks stand
 
 }  // namespace
@@ -22,32 +25,47 @@ void PlotSweep(const ExperimentPicture& picture, const std::string& path) {
   const auto levels = Distinct(picture, &ExperimentGroup::row);
   const auto series = Distinct(picture, &ExperimentGroup::series);
   const auto panels = Distinct(picture, &ExperimentGroup::panel);
-  const std::size_t columns = std::min(kMostColumns, panels.size());
+  PlotOptions options;
+  options.width_mm = picture.width_mm;
+  const bool narrow = SizeOf(options, 1).narrow;
+  const std::size_t columns = narrow ? 1 : std::min(kMostColumns, panels.size());
   const std::size_t lines = (panels.size() + columns - 1) / columns;
   const std::size_t marks = picture.groups.front().shares.size();
   const auto n = static_cast<double>(columns), m = static_cast<double>(lines);
-  PlotOptions options;
-  options.width_mm = picture.width_mm;
-  options.height = static_cast<int>(kTop + m * kPanelHeight + (m - 1) * kGapY + kBottom);
-  Canvas canvas(SizeOf(options), path);
-  DrawTitle(&canvas, picture.title, picture.facts);
-  DrawMarkLegend(&canvas, MarkLegend(picture, series, false));
+  const double gap_y = narrow ? kNarrowGap : kGapY;
+  const double sheet = (narrow ? kNarrowTop + kNarrowBottom : kTop + kBottom) +
+                       m * (narrow ? kNarrowPanel : kPanelHeight) + (m - 1) * gap_y;
+  options.height = static_cast<int>(sheet);
+  Canvas canvas(SizeOf(options, sheet), path);
+  const double below = DrawTitle(&canvas, picture.title, picture.facts);
+  const std::array<LegendGroup, 1> legends = {LegendGroup{"", MarkLegend(picture, series, false)}};
+  const Layout layout(canvas, legends);
+  if (narrow)
+    layout.DrawLegends(&canvas, legends);
+  else
+    DrawMarkLegend(&canvas, legends[0].entries);
 
-  const double width = (canvas.width() - kLeft - kRight - (n - 1) * kGapX) / n;
+  const double left = narrow ? layout.left : kLeft, top = narrow ? below + 30 : kTop;
+  const double width =
+      narrow ? layout.width : (canvas.width() - kLeft - kRight - (n - 1) * kGapX) / n;
+  const double height = narrow ? (layout.bottom - top - (m - 1) * gap_y) / m : kPanelHeight;
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const std::size_t column = p % columns, line = p / columns;
-    const Box box(kLeft + static_cast<double>(column) * (width + kGapX),
-                  kTop + static_cast<double>(line) * (kPanelHeight + kGapY), width, kPanelHeight);
+    const Box box(left + static_cast<double>(column) * (width + kGapX),
+                  top + static_cast<double>(line) * (height + gap_y), width, height);
     const double last = static_cast<double>(levels.size()) - 0.5;
-    const Panel panel{box, Axis{-0.5, last, 1, ""},
-                      NiceAxis(0, 100, 5, false, column == 0 ? "share of trials  [%]" : "")};
+    Panel panel{box, Axis{-0.5, last, 1, ""},
+                NiceAxis(0, 100, narrow ? 3 : 5, false, column == 0 ? "share of trials  [%]" : "")};
+    panel.y.short_label = "share  [%]";
     DrawGrid(&canvas, panel, false);
     canvas.Text({box.x, box.y - 18}, panels[p], {.size = 19, .bold = true});
-    for (std::size_t level = 0; level < levels.size(); ++level)
+    const bool lowest = p + columns >= panels.size();
+    for (std::size_t level = 0; level < levels.size() && (lowest || !narrow); ++level)
       canvas.Text({panel.At(static_cast<double>(level), 0).x, box.y + box.height + 12},
                   levels[level], {.size = 18, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
-    if (p + columns >= panels.size())
-      canvas.Text({box.x + box.width / 2, box.y + box.height + 46}, "sensor noise (preset)",
+    if (lowest)
+      canvas.Text({box.x + box.width / 2, box.y + box.height + (narrow ? 38 : 46)},
+                  "sensor noise (preset)",
                   {.size = 21, .align_x = AlignX::kCentre, .align_y = AlignY::kTop});
     const double slots = static_cast<double>(series.size() * marks);
     for (const ExperimentGroup& group : picture.groups) {

@@ -30,8 +30,8 @@ struct PlotOptions {
   double last_s = 0;  ///< only the newest seconds of the history; 0 = all [s]
   int width = 1600;   ///< [px]
   int height = 1000;  ///< [px]
-  /// As printed, 0: for a screen. Pictures over time have text of at least `font_pt` at any width,
-  /// in a narrow one with their legends below; the others from 165 mm on.
+  /// As printed, 0: for a screen. Text is at least `font_pt` high at any width, in a narrow picture
+  /// with the legends below; PlotIncident has no such layout, its text is that high from 165 mm on.
   double width_mm = 0;
   double font_pt = 7;  ///< smallest text on paper
   double dpi = 0;      ///< of a raster picture with a printed width; 0: `width` pixels

@@ -49,10 +49,11 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const bool lockstep = At(s, "clock") == "lockstep";
     std::string time =
         fmt::format("{} s (tick {})", Fixed(At(s, "time_s"), 3), Plain(At(s, "tick")));
-    // Unknown in the first moments of a daemon, and meaningless where time stands still.
-    if (const Json& factor = At(s, "real_time_factor"); factor.is_number() && factor != 0.0)
+    if (const Json& factor = At(s, "real_time_factor"); factor.is_number())
       time += fmt::format(", {} x real time", Fixed(factor, 2));
-    if (lockstep) time += ", lockstep: advances while a job runs";
+    if (lockstep)
+      time += At(s, "advancing") == true ? ", lockstep: until the job ends"
+                                         : ", lockstep: waits for a job";
     line("time", time);
     line("run", fmt::format("hand {}, object {}, seed {}", Plain(At(s, "hand")),
                             Plain(At(s, "object")), Plain(At(s, "seed"))));

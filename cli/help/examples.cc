@@ -76,7 +76,7 @@ constexpr Example kExamples[] = {
     {"experiment exploration", "regrasp experiment exploration --finger ring --seeds 10 -o ring", "ten runs, a table, a picture"},
     {"experiment rotation", "regrasp experiment rotation --turns 1 --seeds 10 -o turns", "ten turns"},
     {"experiment zoo", "regrasp experiment zoo --objects zoo_pear,zoo_lens -n 5 -o zoo", "two objects, both gaits, paired"},
-    {"experiment exploration", "regrasp experiment exploration --estimator both -n 30 --size 88mm -o study", "two estimators, same starts; a figure"},
+    {"experiment exploration", "regrasp experiment exploration --estimator least_squares,secant -n 30 -o study", "two estimators, same starts"},
     {"experiment rotation", "regrasp experiment rotation --set object.friction=0.4,0.6,0.8 -n 10 -o mu", "three settings, same seeds"},
     {"experiment prediction", "regrasp experiment prediction -n 2 -o foretold", "what foretells a failure; half an hour"},
     {"experiment noise-sweep", "regrasp experiment noise-sweep --finger ring --seeds 5 -o noise", "from perfect to bad sensors"},

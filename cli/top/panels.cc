@@ -99,6 +99,14 @@ std::vector<Column> FingerColumns(int width) {
   return columns;
 }
 
+/// How fast time goes on, or why it does not.
+std::string Speed(const Json& status) {
+  if (const Json& factor = At(status, "real_time_factor"); factor.is_number())
+    return Fixed(factor, 2) + "× real time";
+  const bool waits = At(status, "clock") == "lockstep" && At(status, "advancing") == false;
+  return waits ? "waits for a job" : "";
+}
+
 }  // namespace
 
 void DrawHeader(Screen* screen, const Box& box, const DashboardModel& model) {
@@ -110,7 +118,7 @@ void DrawHeader(Screen* screen, const Box& box, const DashboardModel& model) {
            {{" " + Upper(state) + " ", bad ? Ink::kBadBadge : Ink::kBadge, 0},
             {paused ? "PAUSED" : "", Ink::kWarn, 0},
             {fmt::format("t {} s", Fixed(At(s, "time_s"), 2)), Ink::kBold, 1},
-            {fmt::format("{}× real time", Fixed(At(s, "real_time_factor"), 2)), Ink::kPlain, 2},
+            {Speed(s), Ink::kPlain, 2},
             {Microseconds(At(s, "tick_p99_s")), Ink::kPlain, 3},
             {fmt::format("{} in {}", Plain(At(s, "object")), Plain(At(s, "hand"))), Ink::kDim, 5},
             {"regrasp " + Plain(At(s, "version")), Ink::kDim, 4}});

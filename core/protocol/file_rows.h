@@ -53,15 +53,15 @@ inline constexpr std::array kPlot = {
               .min = 0.1,
               .max = 600,
               .default_text = "everything kept"},
-    ParamSpec{.name = "size_m",
-              .type = kNumber,
-              .sentence =
-                  "printed width; quality, gait and comparison have text of at least 7 pt at any "
-                  "width, the others from 165 mm on",
-              .unit = "m",
-              .min = 0.05,
-              .max = 1,
-              .default_text = "for a screen"},
+    ParamSpec{
+        .name = "size_m",
+        .type = kNumber,
+        .sentence =
+            "printed width; text of at least 7 pt at any width, in an incident from 165 mm on",
+        .unit = "m",
+        .min = 0.05,
+        .max = 1,
+        .default_text = "for a screen"},
     ParamSpec{.name = "title",
               .type = kBool,
               .sentence = "whether the picture has its title and its line of facts",

@@ -105,8 +105,6 @@ const Sample& Service::Topic(const std::string& topic) {
   return sample;
 }
 
-double Service::real_time_factor() const { return newest_.advancing ? real_time_factor_ : 0.0; }
-
 std::vector<std::string> Service::Names(NameSource source) const {
   std::vector<std::string> names;
   switch (source) {

@@ -142,7 +142,8 @@ class Service {
   const HandModel& hand() const { return config_.control.session.model.hand; }
   const ServiceConfig& config() const { return config_; }
   double dt() const { return config_.control.session.world.dt; }
-  double real_time_factor() const;
+  /// Unknown while time stands still, and in the first moments after that.
+  std::optional<double> real_time_factor() const { return real_time_factor_; }
   double speed() const { return config_.control.speed; }
   ClockMode clock() const { return config_.control.clock; }
   std::chrono::steady_clock::time_point started() const { return started_; }
@@ -231,6 +232,7 @@ class Service {
   /// An event of the daemon's own.
   void Tell(const char* kind, const std::string& text);
   void Keep(Json event);
+  void MeasureSpeed();
   /// Writes the record of what led to `event` at once and has its picture drawn.
   void RecordIncident(const Event& event);
   void DrawIncidentLater(std::shared_ptr<const Incident> incident, std::filesystem::path picture);
@@ -267,8 +269,8 @@ class Service {
     double time_s = 0;
     std::uint64_t run = 0;
   };
-  SpeedSample sample_;
-  double real_time_factor_ = 0;
+  std::optional<SpeedSample> sample_;  ///< since when time has gone on, of one run
+  std::optional<double> real_time_factor_;
 };
 
 using Handler = Outcome (*)(Service&, const Params&, Client&);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kEventsKept = 1000;  // for `events`
 constexpr double kRetry_s = 0.2;           // while too many pictures are waiting to be drawn
+constexpr double kSpeedSample_s = 0.25;    // least, for the speed of simulated time
 
 }  // namespace
 
@@ -57,13 +58,7 @@ std::vector<Sample> Service::Drain() {
   if (fresh) {
     ++frame_number_;
     ForgetTopics();
-    const auto now = std::chrono::steady_clock::now();
-    const double elapsed = std::chrono::duration<double>(now - sample_.wall).count();
-    if (elapsed > 0.25) {
-      const bool known = sample_.wall.time_since_epoch().count() != 0 && sample_.run == newest_.run;
-      if (known) real_time_factor_ = (newest_.frame.time_s - sample_.time_s) / elapsed;
-      sample_ = {now, newest_.frame.time_s, newest_.run};
-    }
+    MeasureSpeed();
     if (newest_.frame.job.id != 0) jobs_.Update(newest_.frame.job);
     if (newest_.step.id != 0) jobs_.Update(newest_.step);
   }
@@ -71,6 +66,24 @@ std::vector<Sample> Service::Drain() {
   ended_.clear();
   LookAfterRecorder();
   return std::exchange(news_, {});
+}
+
+void Service::MeasureSpeed() {
+  if (!newest_.advancing) {
+    sample_.reset();
+    real_time_factor_.reset();
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  const SpeedSample newest{now, newest_.frame.time_s, newest_.run};
+  if (!sample_ || sample_->run != newest.run) {
+    sample_ = newest;
+    return;
+  }
+  const double elapsed = std::chrono::duration<double>(now - sample_->wall).count();
+  if (elapsed < kSpeedSample_s) return;
+  real_time_factor_ = (newest.time_s - sample_->time_s) / elapsed;
+  sample_ = newest;
 }
 
 void Service::Keep(Json event) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "core/journal/journal_text.h"
 #include "daemon/output/recorder.h"
@@ -21,6 +22,7 @@ Json JobShown(const Service& service) {
 Json UntilTimes(const Service& service) {
   const Published& newest = service.newest();
   const Frame& frame = newest.frame;
+  const std::optional<double> speed_now = service.real_time_factor();
   return {{"version", Version()},
           {"protocol", kWireVersion},
           {"state", Name(frame.state)},
@@ -31,7 +33,7 @@ Json UntilTimes(const Service& service) {
           {"time_s", frame.time_s},
           {"dt_s", service.dt()},
           {"state_hash", HashText(frame.state_hash)},
-          {"real_time_factor", service.real_time_factor()}};
+          {"real_time_factor", speed_now ? Json(*speed_now) : Json()}};
 }
 
 Json UntilCounts(const Service& service) {

@@ -117,9 +117,9 @@ void Server::FeedWatchdog() {
 
 std::string Server::StatusLine() const {
   const Published& newest = service_.newest();
-  return fmt::format("{}{}, tick {}, {:.2f} x real time", Name(newest.frame.state),
-                     newest.paused ? ", paused" : "", newest.frame.tick,
-                     service_.real_time_factor());
+  const std::optional<double> factor = service_.real_time_factor();
+  return fmt::format("{}{}, tick {}{}", Name(newest.frame.state), newest.paused ? ", paused" : "",
+                     newest.frame.tick, factor ? fmt::format(", {:.2f} x real time", *factor) : "");
 }
 
 std::string Server::Request(const std::string& method, const JsonIn& params) {

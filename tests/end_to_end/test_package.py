@@ -28,6 +28,8 @@ class Package(Case):
                      "share/fish/vendor_completions.d/regrasp.fish", "lib/systemd/system/regraspd.service", "lib/systemd/system/regraspd.socket",
                      "share/doc/regrasp/copyright", "share/doc/regrasp/changelog.gz", "share/doc/regrasp/examples/explore.py"]:
             self.assertTrue((self.root / "usr" / path).is_file(), path)
+        self.assertEqual({path.name for path in (self.root / "usr/libexec/regrasp").iterdir()},
+                         {"regrasp-film", "regrasp-hand", "regrasp-object", "regrasp-plot-experiment", "regrasp-run"})
         self.assertIn("ExecStart=/usr/bin/regraspd ", (self.root / "usr/lib/systemd/system/regraspd.service").read_text())
         self.assertIn(b'regrasp \\- hold', gzip.decompress((self.root / "usr/share/man/man1/regrasp.1.gz").read_bytes()).replace(b" - ", b" \\- "))
         self.assertFalse((self.root / "etc").exists())  # it needs no file
@@ -41,6 +43,9 @@ class Package(Case):
         self.assertRegex(self.field("Version"), r"^\d+\.\d+\.\d+$")
         for words in (["usr/bin/regrasp", "version"], ["usr/bin/regraspd", "--check-config"]):
             subprocess.run([self.root / words[0], *words[1:]], env=environment(), check=True, capture_output=True, timeout=HANG_S)
+        module = subprocess.run(["python3", "-c", "import regrasp; print(regrasp.__file__)"], env=environment(PYTHONPATH=str(self.root / "usr/lib/python3/dist-packages")),
+                                check=True, capture_output=True, text=True, timeout=HANG_S).stdout
+        self.assertTrue(module.startswith(str(self.root)), module)
 
     def test_its_scripts_do_nothing_without_systemd(self):
         control = self.dir / "control"

@@ -212,8 +212,8 @@ class Methods:
             .pdf, .svg; left out: NAME.png, or NAME-2.png ... where that is there.
         overwrite: replace a picture of this name; otherwise that is an error; left out: false.
         last_s: only the last so many seconds [s]; 0.1 to 600; left out: everything kept.
-        size_m: printed width; quality, gait and comparison have text of at least 7 pt at any width, the others from
-            165 mm on [m]; 0.05 to 1; left out: for a screen.
+        size_m: printed width; text of at least 7 pt at any width, in an incident from 165 mm on [m]; 0.05 to 1;
+            left out: for a screen.
         title: whether the picture has its title and its line of facts; left out: true.
         font_size_pt: with size: no text on paper is smaller [pt]; 4 to 24; left out: 7.
         dpi: with size: pixels per inch of a .png or .jpg; 50 to 1200; left out: 1600 pixels wide.
@@ -315,10 +315,10 @@ class Methods:
     def status(self) -> dict:
         """State of daemon and simulation.
         Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
-            time_s, state_hash, real_time_factor, speed, stepper, stepper_reason, tick_p99_s, seed, hand, object,
-            warnings, job, gait: {active, phase, finger, state, reference_angle_rad, target_angle_rad,
-            achieved_angle_rad, cycles, regrasps}, incident (the last drop: tick, cause, record, picture; or null),
-            noise, clients, ....
+            time_s, state_hash, real_time_factor (null while time stands still, or not known yet), speed, stepper,
+            stepper_reason, tick_p99_s, seed, hand, object, warnings, job, gait: {active, phase, finger, state,
+            reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop:
+            tick, cause, record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})
 

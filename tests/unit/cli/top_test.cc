@@ -109,6 +109,21 @@ TEST(TopDrawing, NoNumberIsEverCutOff) {
   }
 }
 
+TEST(TopDrawing, WhereTimeStandsStillThereIsNoSpeed) {
+  DashboardModel model = Model();
+  Json status = Status(3);
+  status.update({{"real_time_factor", nullptr}, {"clock", "lockstep"}, {"advancing", false}});
+  model.Add("status", status);
+  const std::string lockstep = Text(24, 120, model);
+  EXPECT_TRUE(Has(lockstep, "waits for a job")) << lockstep;
+  EXPECT_FALSE(Has(lockstep, "real time")) << lockstep;
+  status.update({{"clock", "continuous"}, {"paused", true}});
+  model.Add("status", status);
+  const std::string paused = Text(24, 120, model);
+  EXPECT_TRUE(Has(paused, "PAUSED")) << paused;
+  EXPECT_FALSE(Has(paused, "waits") || Has(paused, "real time")) << paused;
+}
+
 TEST(TopDrawing, AsciiTerminalsGetAscii) {
   const Screen screen = DrawDashboard(40, 120, false, Model("ring"), Keys().Shown());
   const std::string text = screen.Text();

@@ -10,9 +10,11 @@
 #include <functional>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <regex>
 #include <string>
 #include <thread>
 
+#include "snapshots/plot_experiment.h"
 #include "snapshots/timeline.h"
 #include "tests/unit/snapshots/pixels.h"
 #include "tests/unit/snapshots/synthetic_run.h"
@@ -154,6 +156,40 @@ TEST_F(Snapshots, APictureInMemoryIsThatOfTheFile) {
     const cv::Mat picture = cv::imread(File(name));
     ASSERT_EQ(pixels.size(), picture.total() * picture.elemSize());
     EXPECT_TRUE(std::equal(pixels.begin(), pixels.end(), picture.data)) << name;
+  }
+}
+
+TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
+  constexpr double kWidth_mm = 88;
+  PlotOptions options;
+  options.width_mm = kWidth_mm;
+  PlotScene(run_.back(), hand_, object_, options, File("scene.svg"));
+  PlotContacts(run_, hand_, object_, options, File("contacts.svg"));
+  ExperimentPicture sweep;
+  sweep.title = "Sweep";
+  sweep.facts = "a · b";
+  sweep.width_mm = kWidth_mm;
+  for (const char* finger : {"first", "thumb"})
+    for (const char* noise : {"off", "paper", "coarse"})
+      sweep.groups.push_back({noise, "secant", finger, {{"φ rose", 0.9, 0.6, 1}}, {}});
+  PlotSweep(sweep, File("sweep.svg"));
+  for (const char* name : {"scene.svg", "contacts.svg", "sweep.svg"}) {
+    const std::string svg = Bytes(File(name));
+    std::smatch sheet;
+    ASSERT_TRUE(std::regex_search(
+        svg, sheet, std::regex("width=\"88.00mm\".*viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"")));
+    const double width = std::stod(sheet[1]), height = std::stod(sheet[2]);
+    const double pt_per_unit = kWidth_mm * 72 / 25.4 / width;
+    const std::regex text(
+        "<text transform=\"translate\\(([0-9.-]+) ([0-9.-]+)\\)[^\"]*\" y=\"[^\"]*\" "
+        "font-size=\"([0-9.]+)\"");
+    int count = 0;
+    for (std::sregex_iterator it(svg.begin(), svg.end(), text), end; it != end; ++it, ++count) {
+      EXPECT_GT(std::stod((*it)[3]) * pt_per_unit, 7 - 0.02) << name;  // sizes have two decimals
+      EXPECT_GE(std::stod((*it)[2]), 0) << name;
+      EXPECT_LT(std::stod((*it)[2]), height) << name;
+    }
+    EXPECT_GT(count, 10) << name;
   }
 }
 
