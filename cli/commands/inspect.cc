@@ -10,6 +10,7 @@
 #include "cli/commands/jobs.h"
 #include "cli/commands/parameters.h"
 #include "cli/commands/surface_file.h"
+#include "cli/help/wrap.h"
 #include "cli/top/top.h"
 #include "core/files/draft.h"
 
@@ -60,7 +61,8 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const Json& noise = At(s, "noise");
     // A daemon that is older does not say why.
     if (const Json& reason = At(s, "stepper_reason"); reason.is_string())
-      line("stepper", fmt::format("{} ({})", Plain(At(s, "stepper")), Plain(reason)));
+      out.Add(Wrap(fmt::format("{:<12}{} ({})", "stepper", Plain(At(s, "stepper")), Plain(reason)),
+                   12));
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
     const std::string changed = ChangedText(At(s, "changed_parameters"));

@@ -39,7 +39,7 @@ class Sizes(Top):
     def test_everything_at_80x24(self):
         self.expect(0, "grasp", "--wait")
         session = self.top(24, 80)
-        self.check(session, 24, 80, ["HOLDING", r"t [\d.]+ s", "real time", r"tick p99 \d+ µs", "regrasp 0", "noise paper", "seed 1", "rec off", "1 client",
+        self.check(session, 24, 80, ["HOLDING", r"t [\d.]+ s", "waits for a job", r"tick p99 \d+ µs", "regrasp 0", "noise paper", "seed 1", "rec off", "1 client",
                                      "object", "explore", "ROLE", "CONTACT", "FORCE", "LIMIT", "MANIP", "Manipulability φ.*, 30 s", "Stability .*, 30 s", r"\[active\]",
                                      "Events", "s  holding"])
 
