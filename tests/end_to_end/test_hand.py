@@ -77,7 +77,8 @@ class Hand(Case):
         # Why this stepper: tried at load, and told alike by everything that is asked.
         self.assertEqual(status["stepper"], "fast")
         self.assertRegex(status["stepper_reason"], "^passed at load: .* within 5 %; 1 s of free motion$")
-        self.assertIn(f"stepper     fast ({status['stepper_reason']})", self.expect(0, "status").stdout)
+        shown = " ".join(self.expect(0, "status").stdout.split())  # lines of at most 80 columns
+        self.assertIn(f"stepper fast ({status['stepper_reason']})", shown)
         self.assertEqual(self.check(self.dir / "mine.toml")["stepper_reason"], status["stepper_reason"])
 
     def test_check_tells_what_a_file_says(self):
