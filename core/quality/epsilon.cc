@@ -113,12 +113,7 @@ double WrenchHullVolume(std::span<const GraspContact> contacts, double torque_sc
     throw std::length_error("wrench hull: " + std::to_string(wrenches.size()) +
                             " primitive wrenches; allowed: at most " +
                             std::to_string(kMaxHullWrenches));
-  // To make and to free the room takes longer than a hull of some contacts: it is kept, unless
-  // large.
-  const bool small = wrenches.size() <= kTickWrenches;
-  thread_local WrenchHull kept;
-  WrenchHull once;
-  WrenchHull& hull = small ? kept : once;
+  WrenchHull hull;
   hull.Reserve(wrenches.size(), FacetRoom(wrenches.size()));
   for (const double tolerance : WrenchHull::kTolerances) {
     if (!hull.Start(wrenches, tolerance)) return 0.0;

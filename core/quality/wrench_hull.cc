@@ -13,34 +13,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFlat = 1e-8;               // of the largest wrench: thinner sets span no volume
 constexpr std::size_t kSeamFacets = 100000;  // most new facets of one insertion
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-/// By LU with row pivots, the operations of Eigen's determinant() with every loop unrolled: half
-/// its time. Overwrites its argument.
-template <int k = 0>
-double AbsDeterminant(Matrix6& a) {
-  if constexpr (k < 5) {
-    int pivot = k;
-    double most = std::abs(a(k, k));
-    for (int i = k + 1; i < 6; ++i) {
-      const double size = std::abs(a(i, k));
-      if (size > most) {
-        most = size;
-        pivot = i;
-      }
-    }
-    if (most == 0) return 0;
-    if (pivot != k)
-      for (int j = k; j < 6; ++j) std::swap(a(k, j), a(pivot, j));
-    for (int i = k + 1; i < 6; ++i) a(i, k) /= a(k, k);
-    for (int j = k + 1; j < 6; ++j)
-      for (int i = k + 1; i < 6; ++i) a(i, j) -= a(i, k) * a(k, j);
-    return AbsDeterminant<k + 1>(a);
-  } else {
-    return std::abs((a(0, 0) * (a(1, 1) * a(2, 2))) * (a(3, 3) * (a(4, 4) * a(5, 5))));
-  }
-}
-
 }  // namespace
 
 void AppendPrimitiveWrenches(std::span<const GraspContact> contacts, double torque_scale, int edges,
@@ -281,9 +253,9 @@ double WrenchHull::Volume() const {
   double sum = 0.0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     if (dead[f]) continue;
-    Matrix6 edges;
+    Eigen::Matrix<double, 6, 6> edges;
     for (int v = 0; v < 6; ++v) edges.col(v) = points_[facets_[f].vertex[v]] - inside_;
-    sum += AbsDeterminant(edges);
+    sum += std::abs(edges.determinant());
   }
   return sum / 720.0;
 }
