@@ -14,8 +14,7 @@ void Session::Impl::Feel() {
   for (const FingerEstimate& f : e.fingers)
     if (f.in_contact && f.force >= shape.least_force && f.ticks_in_contact * dt >= shape.settled_s)
       // Without the map the present contacts are all that is known, and known for sure.
-      for (int k = 0; k < (parameters.gait.map ? 1 : shape.full); ++k)
-        felt.Add(q_OW * (f.p_WC - p_WO), q_OW * f.normal_W);
+      felt.Add(q_OW * (f.p_WC - p_WO), q_OW * f.normal_W, parameters.gait.map ? 1 : shape.full);
 }
 
 void Session::Impl::FeelFriction() {

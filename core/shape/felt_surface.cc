@@ -44,15 +44,15 @@ Vector3d FeltSurface::CellDirection(int i) {
   return d.normalized();
 }
 
-void FeltSurface::Add(const Vector3d& p_O, const Vector3d& normal_O) {
+void FeltSurface::Add(const Vector3d& p_O, const Vector3d& normal_O, int samples) {
   const double radius = p_O.norm();
   if (!(radius > kLeastRadius) || !(normal_O.dot(p_O) > parameters_.least_cosine * radius)) return;
   const int index = CellOf(p_O);
   Cell& cell = cells_[index];
   if (cell.count == 0) touched_[num_touched_++] = static_cast<std::int16_t>(index);
   log_radius_sum_ -= cell.log_radius;
-  cell.count = std::min(cell.count + 1, parameters_.memory);
-  const double gain = 1.0 / cell.count;
+  cell.count = std::max(samples, std::min(cell.count + samples, parameters_.memory));
+  const double gain = static_cast<double>(samples) / cell.count;
   cell.log_radius += gain * (std::log(radius) - cell.log_radius);
   cell.direction_sum += gain * (p_O / radius - cell.direction_sum);
   cell.normal_sum += gain * (normal_O - cell.normal_sum);

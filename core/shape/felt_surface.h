@@ -56,7 +56,8 @@ class FeltSurface {
   const ShapeParameters& parameters() const { return parameters_; }
   /// A contact: point [m] and outward unit normal, in O. Left out where the point is nearer than
   /// 1 mm to the centre, or the normal does not point away from it: no star-shaped body has such.
-  void Add(const Vector3d& p_O, const Vector3d& normal_O);
+  /// `samples` (>= 1): it counts as so many alike, however little is remembered.
+  void Add(const Vector3d& p_O, const Vector3d& normal_O, int samples = 1);
   /// The surface in direction `d` (any length > 0). Some microseconds; no allocation.
   SurfacePoint At(const Vector3d& d_O) const;
   /// SurfacePoint::bend alone, at a tenth of the cost; 0 where nothing was felt nearby.
