@@ -9,15 +9,15 @@ Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const 
   if (hand.num_fingers() >= kEnough) return {};
   if (command.type == CommandType::kExplore)
     return {Verdict::Kind::kBadState,
-            "exploring needs a hand of four fingers or more: this one has fewer, and without the "
-            "one that explores the others do not hold the object",
+            "exploring needs a hand of four fingers or more: without the one that explores the "
+            "others do not hold the object",
             "regrasp move --turn 0,0,-10 --wait"};
   if (command.type != CommandType::kRotate) return {};
   if (!command.continuous && std::abs(command.angle_rad) <= parameters.gait.step_rad) return {};
   return {Verdict::Kind::kBadState,
-          "turning by more than gait.step_rad needs a hand of four fingers or more: this one has "
-          "fewer, and without the one that regrasps the others do not hold the object",
-          "regrasp rotate --angle 20 --wait, a turn without a regrasp"};
+          "turning by more than gait.step_rad needs a hand of four fingers or more: without the "
+          "one that regrasps the others do not hold the object",
+          "regrasp rotate with an angle of at most gait.step_rad: a turn without a regrasp"};
 }
 
 }  // namespace regrasp
