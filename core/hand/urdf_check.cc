@@ -196,6 +196,7 @@ class Checker {
     const int parent = LinkOf(node, "parent", values);
     joints_.push_back({name, node->GetLineNum(), parent, LinkOf(node, "child", values)});
     values.Origin(node);
+    for (const char* once : {"parent", "child", "origin"}) AllowOne(*node, once, values);
     constexpr std::string_view kTypes[] = {"revolute",  "continuous", "fixed",
                                            "prismatic", "floating",   "planar"};
     if (type != nullptr && std::ranges::find(kTypes, type) == std::end(kTypes))
@@ -209,6 +210,7 @@ class Checker {
   }
 
   void CheckMotion(XMLElement* node, const UrdfValues& values) {
+    for (const char* once : {"axis", "limit", "dynamics", "mimic"}) AllowOne(*node, once, values);
     if (XMLElement* axis = node->FirstChildElement("axis")) {
       const std::size_t before = problems_->count();
       const Vector3d v = values.Vector(axis, "xyz");
