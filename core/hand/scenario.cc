@@ -184,12 +184,13 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   scenario.q_closed = ReadPosture(file, "q_closed_deg", loaded.hand);
   file.ThrowIfAny();
   // What the scenario says of its models counts for its own object, whose file is named from there.
-  const bool beside = fs::path(scenario.object).extension() == ".urdf";
-  loaded.object = object.empty()
-                      ? LoadObject(beside ? (toml_file.parent_path() / scenario.object).string()
-                                          : scenario.object,
-                                   search_path, of_hand, &loaded.report)
-                      : LoadObject(object, search_path, options, &loaded.report);
+  // One that is not there is looked for as any other.
+  std::error_code error;
+  const fs::path beside = toml_file.parent_path() / scenario.object;
+  const bool is_beside = beside.extension() == ".urdf" && fs::exists(beside, error);
+  loaded.object = object.empty() ? LoadObject(is_beside ? beside.string() : scenario.object,
+                                              search_path, of_hand, &loaded.report)
+                                 : LoadObject(object, search_path, options, &loaded.report);
   return loaded;
 }
 
