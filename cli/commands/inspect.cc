@@ -48,21 +48,24 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     line("state", out.Paint(state, StateStyle(state)) +
                       (At(s, "paused") == true ? out.Paint(" (paused)", Style::kWarn) : ""));
     const bool lockstep = At(s, "clock") == "lockstep";
+    const bool stands = At(s, "paused") == true || state == "faulted";  // no job makes it go on
     std::string time =
         fmt::format("{} s (tick {})", Fixed(At(s, "time_s"), 3), Plain(At(s, "tick")));
-    if (const Json& factor = At(s, "real_time_factor"); factor.is_number())
+    // 0 where time stands still: the state, or the next words, say why.
+    if (const Json& factor = At(s, "real_time_factor"); factor.is_number() && factor != 0.0)
       time += fmt::format(", {} x real time", Fixed(factor, 2));
-    if (lockstep)
-      time += At(s, "advancing") == true ? ", lockstep: until the job ends"
-                                         : ", lockstep: waits for a job";
+    if (lockstep && At(s, "advancing") == true)
+      time += ", lockstep: until the job ends";
+    else if (lockstep)
+      time += stands ? ", lockstep" : ", lockstep: waits for a job";
     line("time", time);
     line("run", fmt::format("hand {}, object {}, seed {}", Plain(At(s, "hand")),
                             Plain(At(s, "object")), Plain(At(s, "seed"))));
     const Json& noise = At(s, "noise");
-    // A daemon that is older does not say why.
-    if (const Json& reason = At(s, "stepper_reason"); reason.is_string())
-      out.Add(Wrap(fmt::format("{:<12}{} ({})", "stepper", Plain(At(s, "stepper")), Plain(reason)),
-                   12));
+    std::string stepper = Plain(At(s, "stepper"));
+    if (const Json& reason = At(s, "stepper_reason"); reason.is_string())  // not of an older daemon
+      stepper += fmt::format(" ({})", Plain(reason));
+    out.Add(Wrap(fmt::format("{:<12}{}", "stepper", stepper), 12));
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
     const std::string changed = ChangedText(At(s, "changed_parameters"));

@@ -101,9 +101,10 @@ std::vector<Column> FingerColumns(int width) {
 
 /// How fast time goes on, or why it does not.
 std::string Speed(const Json& status) {
-  if (const Json& factor = At(status, "real_time_factor"); factor.is_number())
+  if (const Json& factor = At(status, "real_time_factor"); factor.is_number() && factor != 0.0)
     return Fixed(factor, 2) + "× real time";
-  const bool waits = At(status, "clock") == "lockstep" && At(status, "advancing") == false;
+  const bool waits = At(status, "clock") == "lockstep" && At(status, "advancing") == false &&
+                     At(status, "paused") != true && At(status, "state") != "faulted";
   return waits ? "waits for a job" : "";
 }
 

@@ -154,7 +154,7 @@ inline constexpr std::array kInspectRows = {
                false,
                "version, protocol, state, paused, clock (continuous, lockstep), "
                "advancing (time goes on now), tick, time_s, state_hash, "
-               "real_time_factor (null while time stands still, or not known yet), "
+               "real_time_factor (0 while time stands still, null where it is not known yet), "
                "speed, stepper, stepper_reason, tick_p99_s, seed, hand, object, warnings, job, "
                "gait: {active, "
                "phase, finger, state, "

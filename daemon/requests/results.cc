@@ -134,7 +134,6 @@ Outcome Plot(Service& service, const Params& params, Client&) {
                          "no incident: nothing was dropped since this daemon started",
                          "regrasp plot quality");
     job->frames = job->incident->frames;
-    job->options.changed = ChangedText(job->incident->parameters, service.journal().config.model);
     job->options.object_name = job->incident->object;
   }
   if (job->frames.empty())

@@ -142,8 +142,10 @@ class Service {
   const HandModel& hand() const { return config_.control.session.model.hand; }
   const ServiceConfig& config() const { return config_; }
   double dt() const { return config_.control.session.world.dt; }
-  /// Unknown while time stands still, and in the first moments after that.
-  std::optional<double> real_time_factor() const { return real_time_factor_; }
+  /// 0 while time stands still, unknown in the first moments after that.
+  std::optional<double> real_time_factor() const {
+    return newest_.advancing ? real_time_factor_ : std::optional<double>(0.0);
+  }
   double speed() const { return config_.control.speed; }
   ClockMode clock() const { return config_.control.clock; }
   std::chrono::steady_clock::time_point started() const { return started_; }

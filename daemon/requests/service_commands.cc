@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "daemon/requests/service.h"
 
@@ -17,13 +16,6 @@ constexpr std::size_t kReserve = 1000;  // commands that end something are taken
 /// The row of the parameter that a command sets.
 const ParameterInfo& RowOf(const Command& command) {
   return ParameterTable()[static_cast<std::size_t>(command.parameter)];
-}
-
-/// Whether the command changes nothing, not even the sign of a zero.
-bool HasValue(const Parameters& parameters, const Command& command) {
-  const Vector3d value = RowOf(command).get(parameters);
-  return !IsPreset(RowOf(command)) &&
-         std::memcmp(value.data(), command.value.data(), sizeof value) == 0;
 }
 
 }  // namespace
@@ -89,7 +81,7 @@ std::uint64_t Service::SetParameters(std::vector<Command> commands) {
   std::uint64_t barrier = 0;
   for (const Command& command : commands) {
     barrier = PostCommand(command);
-    if (!HasValue(accepted_.parameters, command)) SetParameter(&AcceptParameters(), command);
+    SetParameter(&AcceptParameters(), command);
     config_.parameter_origins.erase(std::string(RowOf(command).name));
   }
   for (const ParameterInfo& info : ParameterTable())

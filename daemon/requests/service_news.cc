@@ -39,6 +39,7 @@ std::vector<Sample> Service::Drain() {
     history_.Add(published.frame);
     if (recorder_) recorder_->Add(published);
     newest_ = published;
+    ForgetTopics();
   }
   for (const PublishedEvent& published : news) {
     const Event& event = published.event;
@@ -57,7 +58,6 @@ std::vector<Sample> Service::Drain() {
   SaveStateIfDue();
   if (fresh) {
     ++frame_number_;
-    ForgetTopics();
     MeasureSpeed();
     if (newest_.frame.job.id != 0) jobs_.Update(newest_.frame.job);
     if (newest_.step.id != 0) jobs_.Update(newest_.step);

@@ -315,10 +315,10 @@ class Methods:
     def status(self) -> dict:
         """State of daemon and simulation.
         Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
-            time_s, state_hash, real_time_factor (null while time stands still, or not known yet), speed, stepper,
-            stepper_reason, tick_p99_s, seed, hand, object, warnings, job, gait: {active, phase, finger, state,
-            reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last drop:
-            tick, cause, record, picture; or null), noise, clients, ....
+            time_s, state_hash, real_time_factor (0 while time stands still, null where it is not known yet), speed,
+            stepper, stepper_reason, tick_p99_s, seed, hand, object, warnings, job, gait: {active, phase, finger,
+            state, reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last
+            drop: tick, cause, record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})
 
