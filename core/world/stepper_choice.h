@@ -15,10 +15,11 @@ struct StepperChoice {
 };
 
 /// Closes the hand of a scenario with both steppers from its preshape: first in the air, then on
-/// the object, which the stand-in holds; 0.3 s in all at dt = 1 ms. Then the fast step moves it
-/// freely for 1 s. The fast step is chosen where it neither faults nor ends more than `kAgreement`
-/// of the motion away from the exact one, and where the exact one faults.
-/// Deterministic; a few tens of milliseconds. `config.stepper` does not matter.
+/// the object, which the stand-in holds; 0.3 s in all at dt = 1 ms. Where neither faults, the fast
+/// step then moves it freely for 1 s. The fast step is chosen where it neither faults nor ends more
+/// than `kAgreement` of the motion away from the exact one, where the exact one faults, and,
+/// untried, for a hand without joints. Deterministic; a few tens of milliseconds. `config.stepper`
+/// does not matter.
 StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& config);
 
 }  // namespace regrasp
