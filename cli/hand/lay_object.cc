@@ -15,6 +15,7 @@ namespace {
 constexpr double kSame = 1e-3;       // places of corners that differ by less are alike [m]
 constexpr double kCorners = 1.2;     // a ball that reaches towards the corners
 constexpr double kOtherBall = 5e-3;  // balls that differ by less are one [m]
+constexpr double kEqual = 0.01;      // moments that differ by less, of the largest, are equal
 
 /// Corners of what the object fills, in O [m].
 std::vector<Vector3d> CornersOf(const ObjectModel& object) {
@@ -54,15 +55,32 @@ std::vector<Matrix3d> Turns(const std::vector<Vector3d>& points) {
   return turns;
 }
 
+/// Principal axes, as columns; the file's where its moments are equal or it lies along them.
+Matrix3d AxesOf(const Matrix3d& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia);
+  const Vector3d& moment = solver.eigenvalues();  // the least first
+  const double equal = kEqual * moment[2];
+  const Matrix3d mixed = inertia - Matrix3d(inertia.diagonal().asDiagonal());
+  if (mixed.cwiseAbs().maxCoeff() <= equal) return Matrix3d::Identity();
+  Matrix3d axes = solver.eigenvectors();
+  const bool pair = moment[1] - moment[0] <= equal || moment[2] - moment[1] <= equal;
+  if (pair) {  // the plane of two is known, not the two: the file's axis that is nearest to it
+    const Vector3d alone = axes.col(moment[1] - moment[0] <= equal ? 2 : 0);
+    int nearest = 0;
+    alone.cwiseAbs().minCoeff(&nearest);
+    const Vector3d along = Vector3d::Unit(nearest);
+    axes.col(0) = (along - alone.dot(along) * alone).normalized();
+    axes.col(1) = alone;
+  }
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
 }  // namespace
 
 ObjectBox BoxOf(const ObjectModel& object) {
   ObjectBox box;
-  if (object.kind == ObjectModel::Kind::kMesh) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(ObjectSolid(object).inertia);
-    box.R_OB = axes.eigenvectors().rowwise().reverse();  // the least moment is of the longest axis
-    if (box.R_OB.determinant() < 0) box.R_OB.col(2) *= -1;
-  }
+  if (object.kind == ObjectModel::Kind::kMesh) box.R_OB = AxesOf(ObjectSolid(object).inertia);
   Vector3d least = Vector3d::Constant(1e9), most = -least;
   for (const Vector3d& corner : CornersOf(object)) {
     least = least.cwiseMin(box.R_OB.transpose() * corner);

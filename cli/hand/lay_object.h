@@ -9,7 +9,8 @@
 
 namespace regrasp::hand {
 
-/// The object's principal axes, and its box along them.
+/// The object's principal axes, and its box along them. Where principal moments are equal within
+/// 1 %, as a cube's or a square prism's, the axes of its file are kept, as far as they are free.
 struct ObjectBox {
   Matrix3d R_OB = Matrix3d::Identity();  ///< axes of the box in O
   Vector3d size = Vector3d::Zero();      ///< along them [m]
