@@ -92,6 +92,10 @@ ObjectBox BoxOf(const ObjectModel& object) {
   if (object.kind != ObjectModel::Kind::kSphere)
     for (const Vector3d& corner : CornersOf(object))
       box.reach = std::max(box.reach, (corner - box.p_OB).norm());
+  std::vector<Vector3d> points;
+  for (const Vector3d& corner : CornersOf(object))
+    points.push_back(box.R_OB.transpose() * (corner - box.p_OB));
+  box.turns = Turns(points);
   return box;
 }
 
@@ -114,11 +118,8 @@ std::vector<Isometry3d> WaysToLie(const LoadedScenario& model, const ObjectBox& 
   ForwardKinematics(model.hand, model.scenario.q_preshape, &data);
   const std::vector<Isometry3d> X_WL(
       data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(model.hand.links.size()));
-  std::vector<Vector3d> points;
-  for (const Vector3d& corner : CornersOf(model.object))
-    points.push_back(box.R_OB.transpose() * (corner - box.p_OB));
   std::vector<std::pair<double, Isometry3d>> ways;
-  for (const Matrix3d& R_WB : Turns(points)) {
+  for (const Matrix3d& R_WB : box.turns) {
     Isometry3d X_WO = Isometry3d::Identity();
     X_WO.linear() = R_WB * box.R_OB.transpose();
     X_WO.translation() = p_WB - X_WO.linear() * box.p_OB;

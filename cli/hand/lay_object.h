@@ -16,6 +16,8 @@ struct ObjectBox {
   Vector3d size = Vector3d::Zero();      ///< along them [m]
   Vector3d p_OB = Vector3d::Zero();      ///< its middle in O [m]
   double reach = 0;                      ///< of the farthest corner from there [m]
+  std::vector<Matrix3d> turns;           ///< R_WB that bring its axes onto those of the hand: 24,
+                                         ///< or fewer where some make no difference
 };
 ObjectBox BoxOf(const ObjectModel& object);
 
