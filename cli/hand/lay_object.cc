@@ -39,16 +39,18 @@ bool Alike(const std::vector<Vector3d>& points, const Matrix3d& a, const Matrix3
 }
 
 /// The turns that bring the axes of a box onto those of the hand: 24, or fewer where some make no
-/// difference to `points` (from the middle, along the box).
-std::vector<Matrix3d> Turns(const std::vector<Vector3d>& points) {
+/// difference to `points` (from the middle, along the box). Those that follow each other have its
+/// `longest` axis along another one.
+std::vector<Matrix3d> Turns(const std::vector<Vector3d>& points, int longest) {
   std::vector<Matrix3d> turns;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b)
-      for (int signs = 0; a != b && signs < 4; ++signs) {
+  const int second = (longest + 1) % 3, third = (longest + 2) % 3;
+  for (int about = 0; about < 4; ++about)
+    for (const double sign : {1, -1})
+      for (int along = 0; along < 3; ++along) {
         Matrix3d R = Matrix3d::Zero();
-        R(a, 0) = signs & 1 ? -1 : 1;
-        R(b, 1) = signs & 2 ? -1 : 1;
-        R.col(2) = R.col(0).cross(R.col(1));
+        R(along, longest) = sign;
+        R((along + 1 + about % 2) % 3, second) = about < 2 ? 1 : -1;
+        R.col(third) = R.col(longest).cross(R.col(second));
         if (std::ranges::none_of(turns, [&](const Matrix3d& t) { return Alike(points, t, R); }))
           turns.push_back(R);
       }
@@ -95,7 +97,9 @@ ObjectBox BoxOf(const ObjectModel& object) {
   std::vector<Vector3d> points;
   for (const Vector3d& corner : CornersOf(object))
     points.push_back(box.R_OB.transpose() * (corner - box.p_OB));
-  box.turns = Turns(points);
+  int longest = 0;
+  box.size.maxCoeff(&longest);
+  box.turns = Turns(points, longest);
   return box;
 }
 

@@ -17,7 +17,8 @@ struct ObjectBox {
   Vector3d p_OB = Vector3d::Zero();      ///< its middle in O [m]
   double reach = 0;                      ///< of the farthest corner from there [m]
   std::vector<Matrix3d> turns;           ///< R_WB that bring its axes onto those of the hand: 24,
-                                         ///< or fewer where some make no difference
+                                         ///< or fewer where some make no difference;
+                                         ///< first each along which the longest may lie
 };
 ObjectBox BoxOf(const ObjectModel& object);
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "core/hand/scenario.h"
@@ -72,6 +73,47 @@ TEST(LayObject, ThreeDifferentMomentsTellTheAxesHoweverTheFileIsTurned) {
   EXPECT_LT(OffAxes(R.transpose() * box.R_OB), 1e-9) << box.R_OB;
   EXPECT_NEAR(box.R_OB.determinant(), 1, 1e-12);
   EXPECT_NEAR(box.size.prod(), 0.03 * 0.05 * 0.08, 1e-12);
+}
+
+/// Which way of the hand the box's longest axis points: x, y, z as 0, 1, 2, against them 3, 4, 5.
+int LongestAxis(const ObjectBox& box, const Matrix3d& R_WB) {
+  int longest = 0, along = 0;
+  box.size.maxCoeff(&longest);
+  R_WB.col(longest).cwiseAbs().maxCoeff(&along);
+  return R_WB(along, longest) > 0 ? along : along + 3;
+}
+
+// Six ways to lie, for two along each axis of the hand; the first three along three.
+TEST(LayObject, ABoxLiesAlongEveryAxisOfTheHandBeforeItIsTurnedAboutItsOwn) {
+  for (const Vector3d& size : {Vector3d(.08, .05, .03), Vector3d(.05, .08, .03)}) {
+    const ObjectBox box = BoxOf(BoxOfTriangles(size));
+    ASSERT_EQ(box.turns.size(), 6u);
+    for (const std::size_t from : {0u, 3u}) {
+      std::set<int> axes;
+      for (std::size_t k = from; k < from + 3; ++k) axes.insert(LongestAxis(box, box.turns[k]) % 3);
+      EXPECT_EQ(axes.size(), 3u) << size.transpose();
+    }
+  }
+}
+
+// A box with a corner drawn out is like itself in no other way: all 24, six directions first.
+TEST(LayObject, WhatHasNoSymmetryHas24WaysAndTheFirstSixPointElsewhere) {
+  ObjectModel object = BoxOfTriangles({.03, .05, .08});
+  object.vertices_O.back() *= 1.1;
+  const ObjectBox box = BoxOf(object);
+  ASSERT_EQ(box.turns.size(), 24u);
+  std::set<int> ways;
+  for (std::size_t k = 0; k < 6; ++k) ways.insert(LongestAxis(box, box.turns[k]));
+  EXPECT_EQ(ways.size(), 6u);
+  for (std::size_t k = 0; k < 24; ++k) {
+    EXPECT_NEAR(box.turns[k].determinant(), 1, 1e-12);
+    for (std::size_t j = 0; j < k; ++j) EXPECT_GT((box.turns[k] - box.turns[j]).norm(), 1);
+  }
+}
+
+// A cube has one.
+TEST(LayObject, AllWaysOfACubeAreOne) {
+  EXPECT_EQ(BoxOf(LoadObject("zoo_cube_rounded", ModelSearchPath())).turns.size(), 1u);
 }
 
 }  // namespace
