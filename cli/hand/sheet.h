@@ -1,0 +1,33 @@
+#pragma once
+
+/// What `hand new` says of the scenario that it made.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/hand/hand_command.h"
+#include "cli/hand/trial.h"
+#include "core/hand/model_report.h"
+#include "core/posture/hand_guess.h"
+
+namespace regrasp::hand {
+
+struct Sheet {
+  std::filesystem::path file, urdf;
+  std::uint64_t seed = 0;  ///< of the search
+  HandGuess guess;
+  std::vector<std::string> left_out;  ///< names of fingers
+  ModelReport report;
+  Found best;
+
+  /// A comment for the scenario: what the grasp is worth.
+  std::string ScoreLine() const;
+  Answer Tell() const;
+
+ private:
+  std::vector<std::string> Remarks() const;
+};
+
+}  // namespace regrasp::hand
