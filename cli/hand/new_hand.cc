@@ -102,12 +102,7 @@ class Maker {
           fmt::format("{}: however it is turned, {} begins inside a link of the open hand",
                       options_.file, object_),
           "regrasp object show FILE tells its size; a smaller object");
-    if (!best_.any())
-      throw Failure(ExitCode::kFailed,
-                    fmt::format("{}: no posture found in which {} fingertips touch a ball of {:g} "
-                                "mm",
-                                options_.file, std::min(hand_.num_fingers(), 3), size_mm_),
-                    "regrasp hand new FILE -o NAME.toml --object-size MM, larger or smaller");
+    if (!best_.any()) FailToTouch();
     const Sheet sheet = MakeSheet();
     Write(sheet);
     return sheet.Tell();
@@ -142,6 +137,24 @@ class Maker {
     hand_.name = out_.stem().string();
     whole_ = guess_.layout;
     all_ = hand_;
+  }
+
+  [[noreturn]] void FailToTouch() const {
+    std::string balls;
+    for (std::size_t k = 0; k < sizes_mm_.size(); ++k)
+      balls += fmt::format("{}{:.4g}",
+                           k == 0                     ? ""
+                           : k + 1 < sizes_mm_.size() ? ", "
+                                                      : " or ",
+                           sizes_mm_[k]);
+    const bool ball = object_.empty();
+    throw Failure(
+        ExitCode::kFailed,
+        fmt::format("{}: no posture found in which {} fingertips touch a ball of {} mm{}",
+                    options_.file, std::min(hand_.num_fingers(), 3), balls,
+                    ball ? "" : ", which stands for " + object_),
+        fmt::format("regrasp hand new FILE -o NAME.toml {}--object-size MM, larger or smaller",
+                    ball ? "" : "--object " + object_ + " "));
   }
 
   void ReadObject() {
