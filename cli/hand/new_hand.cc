@@ -258,6 +258,7 @@ class Maker {
       progress_.Show("laying the object in" + without_ + ", trying it",
                      static_cast<double>(k) / kWays);
       found.model.scenario.X_WO = ways[k];
+      ++ways_;
       found.Try(search_.seed, kTrials);
       if (found.Better(*best)) *best = found;
     }
@@ -295,6 +296,9 @@ class Maker {
     sheet.left_out = left_out_;
     sheet.report = report_;
     sheet.best = best_;
+    sheet.ball = object_.empty();
+    sheet.ways = ways_;
+    sheet.seeds = object_.empty() ? 1 : kTrials;
     return sheet;
   }
 
@@ -328,6 +332,7 @@ class Maker {
   double size_mm_, tilt_;
   std::vector<double> sizes_mm_ = {size_mm_};  // of balls, tried until one is good
   bool touched_ = false;                       // the fingers can touch one of them
+  int ways_ = 0;                               // to lay the object in, that were tried
   Vector3d gravity_W_;
   Progress progress_;
   GraspSearch search_;

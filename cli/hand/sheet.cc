@@ -21,13 +21,21 @@ std::string Sheet::ScoreLine() const {
                             1e3 * std::min(g.clearance, best.way.gap));
 }
 
+std::string Sheet::Tried() const {
+  if (!best.trial.held) return "tried: does not hold";
+  return fmt::format("tried{}: holds {} for {:g} s, moved {:.2f} mm{}",
+                     ball ? "" : fmt::format(" with {} seeds", seeds), best.model.scenario.object,
+                     kHold, 1e3 * best.trial.moved_m, ball ? "" : " at most");
+}
+
 std::vector<std::string> Sheet::Remarks() const {
   std::vector<std::string> remarks;
   const BallGrasp& g = best.grasp;
+  const char* held = ball ? "the ball" : "the object";
   if (g.load_margin < kOpposes)
-    remarks.push_back(
-        "no finger opposes the others: the fingertips cannot hold the ball against "
-        "every small push");
+    remarks.push_back(fmt::format(
+        "no finger opposes the others: the fingertips cannot hold {} against every small push",
+        held));
   for (const std::string& name : left_out)
     remarks.push_back(
         fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
@@ -42,8 +50,8 @@ std::vector<std::string> Sheet::Remarks() const {
   else if (g.load_margin >= kOpposes &&
            g.margin_without[static_cast<std::size_t>(g.opposing)] < kOpposes)
     remarks.push_back(
-        fmt::format("without {} the others cannot hold the ball: it will not be allowed to leave",
-                    best.model.hand.fingers[static_cast<std::size_t>(g.opposing)].name));
+        fmt::format("without {} the others cannot hold {}: it will not be allowed to leave",
+                    best.model.hand.fingers[static_cast<std::size_t>(g.opposing)].name, held));
   for (const Finger& finger : best.model.hand.fingers)
     if (finger.joints.size() < 3)
       remarks.push_back(fmt::format("{} has {} driven joints: it holds, but cannot explore",
@@ -53,7 +61,11 @@ std::vector<std::string> Sheet::Remarks() const {
         fmt::format("{} finds no straight way to its contact within its limits",
                     best.model.hand.fingers[static_cast<std::size_t>(best.way.stuck)].name));
   if (!best.trial.held)
-    remarks.push_back(fmt::format("tried once, it did not hold: {}", best.trial.end));
+    remarks.push_back(
+        ball ? fmt::format("tried once, it did not hold: {}", best.trial.end)
+             : fmt::format("{} ways to lay {} in were tried with up to {} seeds, and none held; "
+                           "the one written: {}",
+                           ways, best.model.scenario.object, seeds, best.trial.end));
   for (const ModelWarning& warning : report.warnings) remarks.push_back(warning.Line());
   return remarks;
 }
@@ -98,10 +110,7 @@ Answer Sheet::Tell() const {
       "{}: load margin {:.2f} N, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
       "stepper {}: {}",
       file.string(), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap), table,
-      best.trial.held ? fmt::format("tried: holds {} for {:g} s, moved {:.2f} mm",
-                                    best.model.scenario.object, kHold, 1e3 * best.trial.moved_m)
-                      : "tried: does not hold",
-      stepper, best.choice.reason);
+      Tried(), stepper, best.choice.reason);
   for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
   answer.text += fmt::format("\n  next: regrasp up --hand {}", file.string());
   return answer;

@@ -21,12 +21,16 @@ struct Sheet {
   std::vector<std::string> left_out;  ///< names of fingers
   ModelReport report;
   Found best;
+  bool ball = true;  ///< is what is held; otherwise an object that is laid into the grasp
+  int ways = 0;      ///< to lay it in, that were tried
+  int seeds = 1;     ///< with which it must be held
 
   /// A comment for the scenario: what the grasp is worth.
   std::string ScoreLine() const;
   Answer Tell() const;
 
  private:
+  std::string Tried() const;
   std::vector<std::string> Remarks() const;
 };
 
