@@ -39,14 +39,9 @@ std::vector<std::string> Sheet::Remarks() const {
   for (const std::string& name : left_out)
     remarks.push_back(
         fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
-  if (best.model.hand.num_fingers() < 3)
-    remarks.push_back(
-        "two fingers: nothing keeps the ball from turning about the line between them; none can "
-        "leave the grasp, so the hand does not explore or regrasp");
-  else if (best.model.hand.num_fingers() == 3)
-    remarks.push_back(
-        "three fingers: none can leave the grasp; the hand holds and moves the ball "
-        "but does not explore or regrasp");
+  const std::string_view few = FewFingers(best.model.hand.num_fingers());
+  if (!few.empty())
+    remarks.emplace_back(few);
   else if (g.load_margin >= kOpposes &&
            g.margin_without[static_cast<std::size_t>(g.opposing)] < kOpposes)
     remarks.push_back(
