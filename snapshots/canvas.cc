@@ -56,7 +56,16 @@ std::unique_ptr<Sheet> MakeSheet(const SheetSize& size, const Fonts& fonts) {
   return MakeRasterSheet(size, fonts);
 }
 
+/// Of a sheet on which the smallest text is `font_pt` high when printed, logical.
+double WantedWidth(const PlotOptions& options) {
+  return options.width_mm * 72 / 25.4 * kSmallestText / options.font_pt;
+}
+
 }  // namespace
+
+bool Narrow(const PlotOptions& options) {
+  return options.width_mm > 0 && WantedWidth(options) < kNarrowest;
+}
 
 CanvasSize SizeOf(const PlotOptions& options, double narrow_height) {
   CanvasSize size{options.width, options.height};
@@ -67,11 +76,9 @@ CanvasSize SizeOf(const PlotOptions& options, double narrow_height) {
     size.width_px = static_cast<int>(std::lround(options.width_mm / 25.4 * options.dpi));
     size.height_px = options.height * size.width_px / options.width;
   }
-  const double width_pt = options.width_mm * 72 / 25.4;
-  const double wanted = width_pt * kSmallestText / options.font_pt;
-  size.narrow = wanted < kNarrowest && narrow_height > 0;
+  size.narrow = Narrow(options) && narrow_height > 0;
   size.logical_width =
-      std::clamp(wanted, size.narrow ? kNarrowestColumn : kNarrowest, kLogicalWidth);
+      std::clamp(WantedWidth(options), size.narrow ? kNarrowestColumn : kNarrowest, kLogicalWidth);
   // As much height as a wide picture has: the print becomes taller instead.
   const double grown = size.narrow ? narrow_height * size.width_px / size.logical_width
                                    : size.height_px * kLogicalWidth / size.logical_width;

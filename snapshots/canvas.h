@@ -35,6 +35,8 @@ struct CanvasSize {
 /// width leaves no room for legends beside the axes, a picture that has a narrow layout, of
 /// `narrow_height` logical units, gets that; one that has none (0) shrinks with its text.
 CanvasSize SizeOf(const PlotOptions& options, double narrow_height = 0);
+/// Whether a picture that has a narrow layout gets it.
+bool Narrow(const PlotOptions& options);
 
 class Canvas {
  public:

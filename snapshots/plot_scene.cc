@@ -106,7 +106,8 @@ class ViewPainter {
     const cv::Size size = canvas->PixelsOf(box);
     // Room above for names and directions, below for the scales; a narrow sheet has it at the
     // sides.
-    const double unit = canvas->scale(), above = canvas->narrow() ? 40 : 106, below = 14;
+    const double unit = canvas->scale(), above = canvas->narrow() ? 40 : 46;
+    const double below = canvas->narrow() ? 14 : 74;
     camera_ = FitCamera(bodies, to_viewer, up,
                         size - cv::Size(0, static_cast<int>((above + below) * unit)), 34 * unit);
     camera_.centre_y_px += above * unit;

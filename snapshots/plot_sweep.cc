@@ -27,7 +27,7 @@ void PlotSweep(const ExperimentPicture& picture, const std::string& path) {
   const auto panels = Distinct(picture, &ExperimentGroup::panel);
   PlotOptions options;
   options.width_mm = picture.width_mm;
-  const bool narrow = SizeOf(options, 1).narrow;
+  const bool narrow = Narrow(options);
   const std::size_t columns = narrow ? 1 : std::min(kMostColumns, panels.size());
   const std::size_t lines = (panels.size() + columns - 1) / columns;
   const std::size_t marks = picture.groups.front().shares.size();

@@ -33,15 +33,16 @@ class SteppedDaemon {
            std::int64_t max_ticks, const std::function<void()>& look = {});
   /// Begins a new run when the present one has faulted: what follows is accepted again.
   void LeaveFault();
-  /// A run in which the object is in the hand. Returns the record of the grasp. Where seed, noise
-  /// and parameters are those of the last grasp it is not made again: the run goes on from the
-  /// state that it led to, which is the same to the last bit.
+  /// A run in which the object is in the hand. Returns the record of the grasp. Where seed,
+  /// object, noise and parameters are those of the last grasp it is not made again: the run goes on
+  /// from the state that it led to, which is the same to the last bit.
   Json Grasp(std::int64_t seed);
 
  private:
   void Step(const Json& params);
 
-  Json start_;  ///< what the last grasp began from: seed, noise, parameters; null: none is kept
+  Json start_;  ///< what the last grasp began from: seed, object, noise, parameters; null: none is
+                ///< kept
   Json grasp_;  ///< its record
   PrivateDaemon daemon_;
   Client client_;

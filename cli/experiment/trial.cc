@@ -15,7 +15,7 @@
 namespace regrasp::cli {
 namespace {
 
-constexpr std::int64_t kExploreChunk = 250, kExploreLimit = 60000;  // [ticks]
+constexpr std::int64_t kExploreLimit = 60000;  // [ticks]
 constexpr std::int64_t kRotateChunk = 1000, kLookChunk = 100;
 constexpr std::int64_t kLongestWatched = 300000;  // of a turn that is looked at
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
@@ -87,7 +87,7 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
                           {"criterion", plan.CriterionOf(unit.which)},
                           {"estimator", estimator},
                           {"seed", unit.seed}},
-                         kExploreChunk, kExploreLimit);
+                         kExploreLimit, kExploreLimit);
     daemon->Step(kHoldTicks);
     status = daemon->Call("status");
     row["outcome"] = Outcome(record, Plain(At(status, "state")));

@@ -156,18 +156,23 @@ std::vector<std::string> Warnings(const Loaded& loaded, int own_contacts) {
       warnings.push_back(fmt::format(
           "finger {} has {} driven joints: it can hold, but a tip needs 3 to slide where it shall",
           finger.name, finger.joints.size()));
-  if (loaded.model.hand.num_fingers() < 3)
-    warnings.push_back(
-        "two fingers: nothing keeps the object from turning about the line between them; none can "
-        "leave the grasp, so the hand does not explore or regrasp");
-  if (loaded.model.hand.num_fingers() == 3)
-    warnings.push_back(
-        "three fingers: none can leave the grasp, so the hand holds and moves an "
-        "object but does not explore or regrasp");
+  const std::string_view few = FewFingers(loaded.model.hand.num_fingers());
+  if (!few.empty()) warnings.emplace_back(few);
   return warnings;
 }
 
 }  // namespace
+
+std::string_view FewFingers(int fingers) {
+  if (fingers < 3)
+    return "two fingers: nothing keeps the object from turning about the line between them; none "
+           "can leave the grasp, so the hand does not explore or regrasp";
+  if (fingers == 3)
+    return "three fingers: none can leave the grasp, so the hand holds and moves an object but "
+           "does "
+           "not explore or regrasp";
+  return "";
+}
 
 void DrawHand(const LoadedScenario& model, const std::string& file) {
   SessionConfig config;

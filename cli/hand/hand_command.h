@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
@@ -51,6 +52,9 @@ Answer CheckHand(const Options& options);
 
 /// Writes a scenario for a URDF and tells how good its grasp is.
 Answer NewHand(const Options& options);
+
+/// What a hand of so few fingers cannot do; "" from four on.
+std::string_view FewFingers(int fingers);
 
 /// Draws the hand in its preshape.
 void DrawHand(const LoadedScenario& model, const std::string& file);

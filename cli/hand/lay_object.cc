@@ -15,6 +15,7 @@ namespace {
 constexpr double kSame = 1e-3;       // places of corners that differ by less are alike [m]
 constexpr double kCorners = 1.2;     // a ball that reaches towards the corners
 constexpr double kOtherBall = 5e-3;  // balls that differ by less are one [m]
+constexpr double kEqual = 0.01;      // moments that differ by less, of the largest, are equal
 
 /// Corners of what the object fills, in O [m].
 std::vector<Vector3d> CornersOf(const ObjectModel& object) {
@@ -38,31 +39,50 @@ bool Alike(const std::vector<Vector3d>& points, const Matrix3d& a, const Matrix3
 }
 
 /// The turns that bring the axes of a box onto those of the hand: 24, or fewer where some make no
-/// difference to `points` (from the middle, along the box).
-std::vector<Matrix3d> Turns(const std::vector<Vector3d>& points) {
+/// difference to `points` (from the middle, along the box). Those that follow each other have its
+/// `longest` axis along another one.
+std::vector<Matrix3d> Turns(const std::vector<Vector3d>& points, int longest) {
   std::vector<Matrix3d> turns;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b)
-      for (int signs = 0; a != b && signs < 4; ++signs) {
+  const int second = (longest + 1) % 3, third = (longest + 2) % 3;
+  for (int about = 0; about < 4; ++about)
+    for (const double sign : {1, -1})
+      for (int along = 0; along < 3; ++along) {
         Matrix3d R = Matrix3d::Zero();
-        R(a, 0) = signs & 1 ? -1 : 1;
-        R(b, 1) = signs & 2 ? -1 : 1;
-        R.col(2) = R.col(0).cross(R.col(1));
+        R(along, longest) = sign;
+        R((along + 1 + about % 2) % 3, second) = about < 2 ? 1 : -1;
+        R.col(third) = R.col(longest).cross(R.col(second));
         if (std::ranges::none_of(turns, [&](const Matrix3d& t) { return Alike(points, t, R); }))
           turns.push_back(R);
       }
   return turns;
 }
 
+/// Principal axes, as columns; the file's where its moments are equal or it lies along them.
+Matrix3d AxesOf(const Matrix3d& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia);
+  const Vector3d& moment = solver.eigenvalues();  // the least first
+  const double equal = kEqual * moment[2];
+  const Matrix3d mixed = inertia - Matrix3d(inertia.diagonal().asDiagonal());
+  if (mixed.cwiseAbs().maxCoeff() <= equal) return Matrix3d::Identity();
+  Matrix3d axes = solver.eigenvectors();
+  const bool pair = moment[1] - moment[0] <= equal || moment[2] - moment[1] <= equal;
+  if (pair) {  // the plane of two is known, not the two: the file's axis that is nearest to it
+    const Vector3d alone = axes.col(moment[1] - moment[0] <= equal ? 2 : 0);
+    int nearest = 0;
+    alone.cwiseAbs().minCoeff(&nearest);
+    const Vector3d along = Vector3d::Unit(nearest);
+    axes.col(0) = (along - alone.dot(along) * alone).normalized();
+    axes.col(1) = alone;
+  }
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
 }  // namespace
 
 ObjectBox BoxOf(const ObjectModel& object) {
   ObjectBox box;
-  if (object.kind == ObjectModel::Kind::kMesh) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> axes(ObjectSolid(object).inertia);
-    box.R_OB = axes.eigenvectors().rowwise().reverse();  // the least moment is of the longest axis
-    if (box.R_OB.determinant() < 0) box.R_OB.col(2) *= -1;
-  }
+  if (object.kind == ObjectModel::Kind::kMesh) box.R_OB = AxesOf(ObjectSolid(object).inertia);
   Vector3d least = Vector3d::Constant(1e9), most = -least;
   for (const Vector3d& corner : CornersOf(object)) {
     least = least.cwiseMin(box.R_OB.transpose() * corner);
@@ -74,6 +94,12 @@ ObjectBox BoxOf(const ObjectModel& object) {
   if (object.kind != ObjectModel::Kind::kSphere)
     for (const Vector3d& corner : CornersOf(object))
       box.reach = std::max(box.reach, (corner - box.p_OB).norm());
+  std::vector<Vector3d> points;
+  for (const Vector3d& corner : CornersOf(object))
+    points.push_back(box.R_OB.transpose() * (corner - box.p_OB));
+  int longest = 0;
+  box.size.maxCoeff(&longest);
+  box.turns = Turns(points, longest);
   return box;
 }
 
@@ -96,11 +122,8 @@ std::vector<Isometry3d> WaysToLie(const LoadedScenario& model, const ObjectBox& 
   ForwardKinematics(model.hand, model.scenario.q_preshape, &data);
   const std::vector<Isometry3d> X_WL(
       data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(model.hand.links.size()));
-  std::vector<Vector3d> points;
-  for (const Vector3d& corner : CornersOf(model.object))
-    points.push_back(box.R_OB.transpose() * (corner - box.p_OB));
   std::vector<std::pair<double, Isometry3d>> ways;
-  for (const Matrix3d& R_WB : Turns(points)) {
+  for (const Matrix3d& R_WB : box.turns) {
     Isometry3d X_WO = Isometry3d::Identity();
     X_WO.linear() = R_WB * box.R_OB.transpose();
     X_WO.translation() = p_WB - X_WO.linear() * box.p_OB;

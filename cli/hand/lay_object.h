@@ -9,12 +9,16 @@
 
 namespace regrasp::hand {
 
-/// The object's principal axes, and its box along them.
+/// The object's principal axes, and its box along them. Where principal moments are equal within
+/// 1 %, as a cube's or a square prism's, the axes of its file are kept, as far as they are free.
 struct ObjectBox {
   Matrix3d R_OB = Matrix3d::Identity();  ///< axes of the box in O
   Vector3d size = Vector3d::Zero();      ///< along them [m]
   Vector3d p_OB = Vector3d::Zero();      ///< its middle in O [m]
   double reach = 0;                      ///< of the farthest corner from there [m]
+  std::vector<Matrix3d> turns;           ///< R_WB that bring its axes onto those of the hand: 24,
+                                         ///< or fewer where some make no difference;
+                                         ///< first each along which the longest may lie
 };
 ObjectBox BoxOf(const ObjectModel& object);
 

@@ -8,11 +8,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <tuple>
 
 #include "cli/hand/hand_command.h"
 #include "cli/hand/lay_object.h"
-#include "cli/hand/trial.h"
+#include "cli/hand/sheet.h"
 #include "core/common/finger_set.h"
 #include "core/files/draft.h"
 #include "core/posture/grasp_search.h"
@@ -27,8 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small hands use
-constexpr double kOpposes = 0.05;   // [N]: a load margin that counts
-constexpr double kHold = 5;         // [s] of a trial
 constexpr int kTrials = 3;          // seeds with which an object that is no ball must be held
 constexpr std::size_t kWays = 8;    // to lay it into a grasp, that are tried
 constexpr double kLeastBall = 30;   // that stands for it [mm]
@@ -71,34 +68,6 @@ std::string BallFor(double size_mm) {
   return best->name;
 }
 
-struct Found {
-  BallGrasp grasp;
-  WayIn way;
-  LoadedScenario model;
-  HoldTrial trial;
-  StepperChoice choice;
-
-  bool any() const { return !model.hand.links.empty(); }
-  bool Good() const { return any() && trial.held && way.stuck < 0; }
-  void Try(std::uint64_t seed, int times) {
-    choice = ChooseStepper(model, {});
-    trial = TryToHold(model, choice.stepper, seed, kHold);
-    for (int k = 1; k < times && trial.held; ++k) {
-      const HoldTrial next =
-          TryToHold(model, choice.stepper, seed + static_cast<unsigned>(k), kHold);
-      trial = {next.held, next.end, std::max(trial.moved_m, next.moved_m),
-               std::min(trial.margin_n, next.margin_n)};
-    }
-  }
-  bool Better(const Found& other) const {
-    if (!any() || !other.any()) return any();
-    const auto rank = [](const Found& f) {
-      return std::tuple(f.Good(), f.trial.held, f.trial.held ? f.trial.margin_n : 0.0);
-    };
-    return rank(*this) > rank(other);
-  }
-};
-
 class Maker {
  public:
   explicit Maker(const Options& options)
@@ -133,14 +102,10 @@ class Maker {
           fmt::format("{}: however it is turned, {} begins inside a link of the open hand",
                       options_.file, object_),
           "regrasp object show FILE tells its size; a smaller object");
-    if (!best_.any())
-      throw Failure(ExitCode::kFailed,
-                    fmt::format("{}: no posture found in which {} fingertips touch a ball of {:g} "
-                                "mm",
-                                options_.file, std::min(hand_.num_fingers(), 3), size_mm_),
-                    "regrasp hand new FILE -o NAME.toml --object-size MM, larger or smaller");
-    Write();
-    return Tell();
+    if (!best_.any()) FailToTouch();
+    const Sheet sheet = MakeSheet();
+    Write(sheet);
+    return sheet.Tell();
   }
 
  private:
@@ -172,6 +137,24 @@ class Maker {
     hand_.name = out_.stem().string();
     whole_ = guess_.layout;
     all_ = hand_;
+  }
+
+  [[noreturn]] void FailToTouch() const {
+    std::string balls;
+    for (std::size_t k = 0; k < sizes_mm_.size(); ++k)
+      balls += fmt::format("{}{:.4g}",
+                           k == 0                     ? ""
+                           : k + 1 < sizes_mm_.size() ? ", "
+                                                      : " or ",
+                           sizes_mm_[k]);
+    const bool ball = object_.empty();
+    throw Failure(
+        ExitCode::kFailed,
+        fmt::format("{}: no posture found in which {} fingertips touch a ball of {} mm{}",
+                    options_.file, std::min(hand_.num_fingers(), 3), balls,
+                    ball ? "" : ", which stands for " + object_),
+        fmt::format("regrasp hand new FILE -o NAME.toml {}--object-size MM, larger or smaller",
+                    ball ? "" : "--object " + object_ + " "));
   }
 
   void ReadObject() {
@@ -275,6 +258,7 @@ class Maker {
       progress_.Show("laying the object in" + without_ + ", trying it",
                      static_cast<double>(k) / kWays);
       found.model.scenario.X_WO = ways[k];
+      ++ways_;
       found.Try(search_.seed, kTrials);
       if (found.Better(*best)) *best = found;
     }
@@ -303,7 +287,22 @@ class Maker {
         .string();
   }
 
-  void Write() {
+  Sheet MakeSheet() const {
+    Sheet sheet;
+    sheet.file = out_;
+    sheet.urdf = urdf_;
+    sheet.seed = search_.seed;
+    sheet.guess = guess_;
+    sheet.left_out = left_out_;
+    sheet.report = report_;
+    sheet.best = best_;
+    sheet.ball = object_.empty();
+    sheet.ways = ways_;
+    sheet.seeds = object_.empty() ? 1 : kTrials;
+    return sheet;
+  }
+
+  void Write(const Sheet& sheet) const {
     ScenarioText text;
     text.urdf = NamedUrdf();
     text.layout = guess_.layout;
@@ -315,7 +314,7 @@ class Maker {
                     urdf_.filename().string(), out_.filename().string(),
                     object_.empty() ? "" : "--object " + object_ + " ", size_mm_, search_.seed,
                     tilt_ * 180 / M_PI),
-        ScoreLine()};
+        sheet.ScoreLine()};
     std::ofstream file(out_);
     file << WriteScenario(text, hand_);
     file.close();
@@ -323,102 +322,6 @@ class Maker {
       throw Failure(ExitCode::kIo,
                     fmt::format("{}: cannot write: {}", out_.string(), std::strerror(errno)),
                     "another place for -o");
-  }
-
-  std::string ScoreLine() const {
-    const BallGrasp& g = best_.grasp;
-    std::string line = fmt::format("Load margin {:.2f} N; without", g.load_margin);
-    for (std::size_t f = 0; f < hand_.fingers.size(); ++f)
-      line += fmt::format("{} {} {:.2f}", f == 0 ? "" : ",", hand_.fingers[f].name,
-                          std::max(0.0, g.margin_without[f]));
-    return line + fmt::format(" N. Room to limits {:.2f}, clearance {:.1f} mm.", g.room,
-                              1e3 * std::min(g.clearance, best_.way.gap));
-  }
-
-  std::vector<std::string> Remarks() const {
-    std::vector<std::string> remarks;
-    const BallGrasp& g = best_.grasp;
-    if (g.load_margin < kOpposes)
-      remarks.push_back(
-          "no finger opposes the others: the fingertips cannot hold the ball against "
-          "every small push");
-    for (const std::string& name : left_out_)
-      remarks.push_back(
-          fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
-    if (hand_.num_fingers() < 3)
-      remarks.push_back(
-          "two fingers: nothing keeps the ball from turning about the line between them; none can "
-          "leave the grasp, so the hand does not explore or regrasp");
-    else if (hand_.num_fingers() == 3)
-      remarks.push_back(
-          "three fingers: none can leave the grasp; the hand holds and moves the ball "
-          "but does not explore or regrasp");
-    else if (g.load_margin >= kOpposes &&
-             g.margin_without[static_cast<std::size_t>(g.opposing)] < kOpposes)
-      remarks.push_back(
-          fmt::format("without {} the others cannot hold the ball: it will not be allowed to leave",
-                      hand_.fingers[static_cast<std::size_t>(g.opposing)].name));
-    for (const Finger& finger : hand_.fingers)
-      if (finger.joints.size() < 3)
-        remarks.push_back(fmt::format("{} has {} driven joints: it holds, but cannot explore",
-                                      finger.name, finger.joints.size()));
-    if (best_.way.stuck >= 0)
-      remarks.push_back(fmt::format("{} finds no straight way to its contact within its limits",
-                                    hand_.fingers[static_cast<std::size_t>(best_.way.stuck)].name));
-    if (!best_.trial.held)
-      remarks.push_back(fmt::format("tried once, it did not hold: {}", best_.trial.end));
-    for (const ModelWarning& warning : report_.warnings) remarks.push_back(warning.Line());
-    return remarks;
-  }
-
-  Answer Tell() const {
-    const BallGrasp& g = best_.grasp;
-    const char* stepper = best_.choice.stepper == Stepper::kFast ? "fast" : "exact";
-    const std::vector<std::string> remarks = Remarks();
-    Answer answer;
-    Json fingers = Json::array();
-    std::string table = fmt::format("\n  {:<10} {:>14} {:>18}  {}", "finger", "rho without [N]",
-                                    "manipulability", "tip");
-    for (std::size_t f = 0; f < hand_.fingers.size(); ++f) {
-      const Finger& finger = hand_.fingers[f];
-      const std::string& tip = guess_.layout.fingers[f].tip_link;
-      fingers.push_back({{"name", finger.name},
-                         {"tip_link", tip},
-                         {"load_margin_without_n", std::max(0.0, g.margin_without[f])},
-                         {"manipulability", g.manipulability[f]},
-                         {"opposing", static_cast<int>(f) == g.opposing}});
-      table += fmt::format("\n  {:<10} {:>14.2f} {:>18.2e}  {}{}", finger.name,
-                           std::max(0.0, g.margin_without[f]), g.manipulability[f], tip,
-                           static_cast<int>(f) == g.opposing ? "    opposing" : "");
-    }
-    answer.json = {{"file", out_.string()},
-                   {"urdf", urdf_.string()},
-                   {"object", best_.model.scenario.object},
-                   {"seed", search_.seed},
-                   {"score", g.score},
-                   {"load_margin_n", g.load_margin},
-                   {"fingers", fingers},
-                   {"room_to_limits", g.room},
-                   {"clearance_m", std::min(g.clearance, best_.way.gap)},
-                   {"held", best_.trial.held},
-                   {"hold_end", best_.trial.end},
-                   {"moved_m", best_.trial.moved_m},
-                   {"stepper", stepper},
-                   {"stepper_reason", best_.choice.reason},
-                   {"remarks", remarks},
-                   {"notes", guess_.notes}};
-    answer.text = fmt::format(
-        "{}: load margin {:.2f} N, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
-        "stepper {}: {}",
-        out_.string(), g.load_margin, g.room, 1e3 * std::min(g.clearance, best_.way.gap), table,
-        best_.trial.held
-            ? fmt::format("tried: holds {} for {:g} s, moved {:.2f} mm",
-                          best_.model.scenario.object, kHold, 1e3 * best_.trial.moved_m)
-            : "tried: does not hold",
-        stepper, best_.choice.reason);
-    for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
-    answer.text += fmt::format("\n  next: regrasp up --hand {}", out_.string());
-    return answer;
   }
 
   const Options& options_;
@@ -429,6 +332,7 @@ class Maker {
   double size_mm_, tilt_;
   std::vector<double> sizes_mm_ = {size_mm_};  // of balls, tried until one is good
   bool touched_ = false;                       // the fingers can touch one of them
+  int ways_ = 0;                               // to lay the object in, that were tried
   Vector3d gravity_W_;
   Progress progress_;
   GraspSearch search_;

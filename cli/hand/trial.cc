@@ -1,6 +1,7 @@
 #include "cli/hand/trial.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "core/session/session.h"
 
@@ -43,6 +44,24 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
     trial.margin_n =
         std::min(trial.margin_n, frame.fingers[static_cast<std::size_t>(f)].load_margin_without);
   return trial;
+}
+
+void Found::Try(std::uint64_t seed, int times) {
+  choice = ChooseStepper(model, {});
+  trial = TryToHold(model, choice.stepper, seed, kHold);
+  for (int k = 1; k < times && trial.held; ++k) {
+    const HoldTrial next = TryToHold(model, choice.stepper, seed + static_cast<unsigned>(k), kHold);
+    trial = {next.held, next.end, std::max(trial.moved_m, next.moved_m),
+             std::min(trial.margin_n, next.margin_n)};
+  }
+}
+
+bool Found::Better(const Found& other) const {
+  if (!any() || !other.any()) return any();
+  const auto rank = [](const Found& f) {
+    return std::tuple(f.Good(), f.trial.held, f.trial.held ? f.trial.margin_n : 0.0);
+  };
+  return rank(*this) > rank(other);
 }
 
 }  // namespace regrasp::hand

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cli/run/run_window.h"
 #include "core/files/draft.h"
@@ -97,13 +98,13 @@ std::vector<Pictured> Explorations(const std::string& path, std::size_t count) {
   return result;
 }
 
-/// The last explorations of all files, those of one input.
+/// The last explorations of all files, their frames moved into the first one's input.
 std::vector<Pictured> Compared(const std::vector<std::string>& paths) {
   std::vector<Pictured> all;
   for (const std::string& path : paths)
     for (Pictured& one : Explorations(path, paths.size() == 1 ? kCompared : 1))
       all.push_back(std::move(one));
-  for (const Pictured& one : all) all.front().input.explorations.push_back(one.input.frames);
+  for (Pictured& one : all) all.front().input.explorations.push_back(std::move(one.input.frames));
   return all;
 }
 
@@ -125,9 +126,12 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
   if (!comparison && paths.size() > 1)
     throw std::runtime_error("only a comparison shows several runs");
   Draft draft(out, Draft::Existing::kReplace);
-  const std::vector<Pictured> runs =
-      comparison ? Compared(paths) : std::vector{LastJob(paths.front(), options.last_s)};
-  PlotInput input = runs.front().input;
+  std::vector<Pictured> runs;
+  if (comparison)
+    runs = Compared(paths);
+  else
+    runs.push_back(LastJob(paths.front(), options.last_s));
+  PlotInput input = std::move(runs.front().input);
   options.last_s = 0;
   options.object_name = input.options.object_name;
   options.changed = input.options.changed;

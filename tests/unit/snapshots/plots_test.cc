@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "snapshots/canvas.h"
 #include "snapshots/plot_experiment.h"
 #include "snapshots/timeline.h"
 #include "tests/unit/snapshots/pixels.h"
@@ -173,6 +174,8 @@ TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
     for (const char* noise : {"off", "paper", "coarse"})
       sweep.groups.push_back({noise, "secant", finger, {{"φ rose", 0.9, 0.6, 1}}, {}});
   PlotSweep(sweep, File("sweep.svg"));
+  const Canvas measure(SizeOf({}));
+  const std::regex any_text("<text ");
   for (const char* name : {"scene.svg", "contacts.svg", "sweep.svg"}) {
     const std::string svg = Bytes(File(name));
     std::smatch sheet;
@@ -181,14 +184,29 @@ TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
     const double width = std::stod(sheet[1]), height = std::stod(sheet[2]);
     const double pt_per_unit = kWidth_mm * 72 / 25.4 / width;
     const std::regex text(
-        "<text transform=\"translate\\(([0-9.-]+) ([0-9.-]+)\\)[^\"]*\" y=\"[^\"]*\" "
-        "font-size=\"([0-9.]+)\"");
+        "<text transform=\"translate\\(([0-9.-]+) ([0-9.-]+)\\)( rotate\\(-90\\))?\" y=\"[^\"]*\" "
+        "font-size=\"([0-9.]+)\" text-anchor=\"(start|middle|end)\"( font-weight=\"bold\")?[^>]*>"
+        "([^<]*)<");
     int count = 0;
     for (std::sregex_iterator it(svg.begin(), svg.end(), text), end; it != end; ++it, ++count) {
-      EXPECT_GT(std::stod((*it)[3]) * pt_per_unit, 7 - 0.02) << name;  // sizes have two decimals
-      EXPECT_GE(std::stod((*it)[2]), 0) << name;
-      EXPECT_LT(std::stod((*it)[2]), height) << name;
+      const double x = std::stod((*it)[1]), y = std::stod((*it)[2]), size = std::stod((*it)[4]);
+      const std::string words = (*it)[7];
+      EXPECT_GT(size * pt_per_unit, 7 - 0.02) << name;  // sizes have two decimals
+      EXPECT_GE(y, 0) << name;
+      EXPECT_LT(y, height) << name;
+      // From its beginning to its end; what is turned goes up.
+      const double length = measure.TextWidth(words, 100, (*it)[6].matched) / 100 * size;
+      const double before = (*it)[5] == "start" ? 0 : (*it)[5] == "end" ? length : length / 2;
+      const bool upwards = (*it)[3].matched;
+      const double first = upwards ? y + before - length : x - before;
+      EXPECT_GE(x, 0) << name << ": " << words;
+      EXPECT_LE(x, width) << name << ": " << words;
+      EXPECT_GE(first, 0) << name << ": " << words;
+      EXPECT_LE(first + length, upwards ? height : width) << name << ": " << words;
     }
+    EXPECT_EQ(count, std::distance(std::sregex_iterator(svg.begin(), svg.end(), any_text),
+                                   std::sregex_iterator()))
+        << name;
     EXPECT_GT(count, 10) << name;
   }
 }

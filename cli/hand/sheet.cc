@@ -1,0 +1,114 @@
+#include "cli/hand/sheet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace regrasp::hand {
+namespace {
+
+constexpr double kOpposes = 0.05;  // [N]: a load margin that counts
+
+}  // namespace
+
+std::string Sheet::ScoreLine() const {
+  const BallGrasp& g = best.grasp;
+  std::string line = fmt::format("Load margin {:.2f} N; without", g.load_margin);
+  for (std::size_t f = 0; f < best.model.hand.fingers.size(); ++f)
+    line += fmt::format("{} {} {:.2f}", f == 0 ? "" : ",", best.model.hand.fingers[f].name,
+                        std::max(0.0, g.margin_without[f]));
+  return line + fmt::format(" N. Room to limits {:.2f}, clearance {:.1f} mm.", g.room,
+                            1e3 * std::min(g.clearance, best.way.gap));
+}
+
+std::string Sheet::Tried() const {
+  if (!best.trial.held) return "tried: does not hold";
+  return fmt::format("tried{}: holds {} for {:g} s, moved {:.2f} mm{}",
+                     ball ? "" : fmt::format(" with {} seeds", seeds), best.model.scenario.object,
+                     kHold, 1e3 * best.trial.moved_m, ball ? "" : " at most");
+}
+
+std::vector<std::string> Sheet::Remarks() const {
+  std::vector<std::string> remarks;
+  const BallGrasp& g = best.grasp;
+  const char* held = ball ? "the ball" : "the object";
+  if (g.load_margin < kOpposes)
+    remarks.push_back(fmt::format(
+        "no finger opposes the others: the fingertips cannot hold {} against every small push",
+        held));
+  for (const std::string& name : left_out)
+    remarks.push_back(
+        fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
+  const std::string_view few = FewFingers(best.model.hand.num_fingers());
+  if (!few.empty())
+    remarks.emplace_back(few);
+  else if (g.load_margin >= kOpposes &&
+           g.margin_without[static_cast<std::size_t>(g.opposing)] < kOpposes)
+    remarks.push_back(
+        fmt::format("without {} the others cannot hold {}: it will not be allowed to leave",
+                    best.model.hand.fingers[static_cast<std::size_t>(g.opposing)].name, held));
+  for (const Finger& finger : best.model.hand.fingers)
+    if (finger.joints.size() < 3)
+      remarks.push_back(fmt::format("{} has {} driven joints: it holds, but cannot explore",
+                                    finger.name, finger.joints.size()));
+  if (best.way.stuck >= 0)
+    remarks.push_back(
+        fmt::format("{} finds no straight way to its contact within its limits",
+                    best.model.hand.fingers[static_cast<std::size_t>(best.way.stuck)].name));
+  if (!best.trial.held)
+    remarks.push_back(
+        ball ? fmt::format("tried once, it did not hold: {}", best.trial.end)
+             : fmt::format("{} ways to lay {} in were tried with up to {} seeds, and none held; "
+                           "the one written: {}",
+                           ways, best.model.scenario.object, seeds, best.trial.end));
+  for (const ModelWarning& warning : report.warnings) remarks.push_back(warning.Line());
+  return remarks;
+}
+
+Answer Sheet::Tell() const {
+  const BallGrasp& g = best.grasp;
+  const char* stepper = best.choice.stepper == Stepper::kFast ? "fast" : "exact";
+  const std::vector<std::string> remarks = Remarks();
+  Answer answer;
+  Json fingers = Json::array();
+  std::string table = fmt::format("\n  {:<10} {:>14} {:>18}  {}", "finger", "rho without [N]",
+                                  "manipulability", "tip");
+  for (std::size_t f = 0; f < best.model.hand.fingers.size(); ++f) {
+    const Finger& finger = best.model.hand.fingers[f];
+    const std::string& tip = guess.layout.fingers[f].tip_link;
+    fingers.push_back({{"name", finger.name},
+                       {"tip_link", tip},
+                       {"load_margin_without_n", std::max(0.0, g.margin_without[f])},
+                       {"manipulability", g.manipulability[f]},
+                       {"opposing", static_cast<int>(f) == g.opposing}});
+    table += fmt::format("\n  {:<10} {:>14.2f} {:>18.2e}  {}{}", finger.name,
+                         std::max(0.0, g.margin_without[f]), g.manipulability[f], tip,
+                         static_cast<int>(f) == g.opposing ? "    opposing" : "");
+  }
+  answer.json = {{"file", file.string()},
+                 {"urdf", urdf.string()},
+                 {"object", best.model.scenario.object},
+                 {"seed", seed},
+                 {"score", g.score},
+                 {"load_margin_n", g.load_margin},
+                 {"fingers", fingers},
+                 {"room_to_limits", g.room},
+                 {"clearance_m", std::min(g.clearance, best.way.gap)},
+                 {"held", best.trial.held},
+                 {"hold_end", best.trial.end},
+                 {"moved_m", best.trial.moved_m},
+                 {"stepper", stepper},
+                 {"stepper_reason", best.choice.reason},
+                 {"remarks", remarks},
+                 {"notes", guess.notes}};
+  answer.text = fmt::format(
+      "{}: load margin {:.2f} N, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
+      "stepper {}: {}",
+      file.string(), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap), table,
+      Tried(), stepper, best.choice.reason);
+  for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
+  answer.text += fmt::format("\n  next: regrasp up --hand {}", file.string());
+  return answer;
+}
+
+}  // namespace regrasp::hand

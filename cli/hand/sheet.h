@@ -1,0 +1,37 @@
+#pragma once
+
+/// What `hand new` says of the scenario that it made.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/hand/hand_command.h"
+#include "cli/hand/trial.h"
+#include "core/hand/model_report.h"
+#include "core/posture/hand_guess.h"
+
+namespace regrasp::hand {
+
+struct Sheet {
+  std::filesystem::path file, urdf;
+  std::uint64_t seed = 0;  ///< of the search
+  HandGuess guess;
+  std::vector<std::string> left_out;  ///< names of fingers
+  ModelReport report;
+  Found best;
+  bool ball = true;  ///< is what is held; otherwise an object that is laid into the grasp
+  int ways = 0;      ///< to lay it in, that were tried
+  int seeds = 1;     ///< with which it must be held
+
+  /// A comment for the scenario: what the grasp is worth.
+  std::string ScoreLine() const;
+  Answer Tell() const;
+
+ private:
+  std::string Tried() const;
+  std::vector<std::string> Remarks() const;
+};
+
+}  // namespace regrasp::hand
