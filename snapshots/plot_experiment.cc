@@ -145,7 +145,7 @@ void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
     throw std::runtime_error(path + ": nothing to draw: the summary has no groups");
   PlotOptions options;
   options.width_mm = picture.width_mm;
-  const bool narrow = SizeOf(options, 1).narrow;
+  const bool narrow = Narrow(options);
   const Places places(picture, narrow);
   options.height = static_cast<int>(places.SheetHeight());
   Canvas canvas(SizeOf(options, narrow ? places.SheetHeight() : 0), path);
