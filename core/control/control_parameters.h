@@ -12,6 +12,8 @@ struct ControlParameters {
   double force_filter_s = 0.010;
   double contact_filter_s = 0.030;
   double pose_filter_s = 0.050;
+  double slow_pose_filter_s = 1.0;    ///< object pose from a sensor with a rate
+  double slow_pose_velocity_s = 0.2;  ///< the object's motion by which its late pose is advanced
   double margin_filter_s = 0.050;  ///< load margins
   /// Contact point from the sensed normal and the fingertip's known shape.
   bool contact_from_normal = true;

@@ -8,7 +8,9 @@ void Session::Impl::Feel() {
   if (!parameters.gait.map) felt.Reset();
   const Estimate& e = estimator.estimate();
   // The sensed pose lags behind the contacts, which move with the joint angles.
-  const double late_s = parameters.control.pose_filter_s - parameters.control.joint_filter_s;
+  const double late_s = sensors.noise().object_rate_hz > 0
+                            ? 0
+                            : parameters.control.pose_filter_s - parameters.control.joint_filter_s;
   const Quaterniond q_OW = (FromRotationVector(late_s * motion.w_W) * e.q_WO).conjugate();
   const Vector3d p_WO = e.p_WO + late_s * motion.v_W;
   for (const FingerEstimate& f : e.fingers)
