@@ -81,9 +81,11 @@ Vector3d StateEstimator::NormalFromTaxel(int i, const Vector3d& p_L, const Senso
     const Vector3d way = f.p_WF - p_WF_before - step.At(p_WF_before);
     normal_W = (before + TangentPart(way, before) / radius).normalized();
   }
+  TaxelContact& taxels = taxels_[static_cast<std::size_t>(i)];
+  if (taxels.pitch() != reading.taxel_pitch_m)
+    taxels = TaxelContact(MakeTipAxes(*hand_, i), reading.taxel_pitch_m);
   const Isometry3d& X_WL = estimate_.kinematics.X_WL[hand_->fingers[i].tip_link];
-  return TaxelContact(MakeTipAxes(*hand_, i), reading.taxel_pitch_m)
-      .IntoCell(p_L, X_WL.linear().transpose() * normal_W);
+  return taxels.IntoCell(p_L, X_WL.linear().transpose() * normal_W);
 }
 
 const Estimate& StateEstimator::Update(const SensorReading& reading,

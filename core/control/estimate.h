@@ -7,9 +7,9 @@
 
 #include "core/common/fields.h"
 #include "core/common/finger_set.h"
+#include "core/control/control_parameters.h"
 #include "core/control/finger_motion.h"
 #include "core/control/taxel_contact.h"
-#include "core/control/control_parameters.h"
 #include "core/hand/kinematics.h"
 #include "core/quality/grasp.h"
 #include "core/sensing/sensor_reading.h"
@@ -109,8 +109,9 @@ class StateEstimator {
   double dt_;
   bool started_ = false;
   std::array<ContactFilter, kMaxFingers> contact_{};
-  int num_poses_ = 0;        // of a pose sensor with a rate
-  double pose_age_s_ = 0;    // in the reading before
+  std::array<TaxelContact, kMaxFingers> taxels_;  // made when a reading says their pitch
+  int num_poses_ = 0;                             // of a pose sensor with a rate
+  double pose_age_s_ = 0;                         // in the reading before
   Vector3d velocity_W_ = Vector3d::Zero(), spin_W_ = Vector3d::Zero();  // by the fingers
   Estimate estimate_;
 };

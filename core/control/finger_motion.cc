@@ -6,7 +6,7 @@ namespace regrasp {
 namespace {
 
 /// Lever arms well below it do not tell a rotation [m].
-constexpr double kLeastArm = 0.004;
+constexpr double kLeastArm = 0.002;
 
 }  // namespace
 

@@ -10,8 +10,8 @@ constexpr int kHalvings = 8;  // of the way to the taxel's centre: to a tenth of
 }  // namespace
 
 int TaxelContact::Nearest(const Vector3d& p_L) const {
-  const auto nearest = std::min_element(
-      taxels_.begin(), taxels_.end(), [&](const Taxel& a, const Taxel& b) {
+  const auto nearest =
+      std::min_element(taxels_.begin(), taxels_.end(), [&](const Taxel& a, const Taxel& b) {
         return (a.p_LT - p_L).squaredNorm() < (b.p_LT - p_L).squaredNorm();
       });
   return static_cast<int>(nearest - taxels_.begin());

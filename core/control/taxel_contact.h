@@ -10,7 +10,6 @@
 ///   - it is taken back to the border of the cell of the taxel that reports.
 
 #include <array>
-#include <span>
 
 #include "core/common/frames.h"
 #include "core/hand/taxels.h"
@@ -19,16 +18,20 @@ namespace regrasp {
 
 class TaxelContact {
  public:
+  TaxelContact() = default;
   /// The taxels of a fingertip, `pitch` [m] apart.
-  TaxelContact(const TipAxes& tip, double pitch) : tip_(tip), taxels_(MakeTaxels(tip, pitch)) {}
-  /// The outward normal of the object next to `normal_L` for which the tip is touched in the cell
-  /// of the taxel whose centre is next to `p_LC` (unit vectors, frame of the tip link).
+  TaxelContact(const TipAxes& tip, double pitch)
+      : tip_(tip), pitch_(pitch), taxels_(MakeTaxels(tip, pitch)) {}
+  double pitch() const { return pitch_; }  ///< 0: of no fingertip
+  /// The object's outward normal (unit, in the frame of the tip link) next to `normal_L` for which
+  /// the tip is touched in the cell of the taxel whose centre is nearest to `p_LC` [m].
   Vector3d IntoCell(const Vector3d& p_LC, const Vector3d& normal_L) const;
 
  private:
   int Nearest(const Vector3d& p_L) const;
   Vector3d PointOf(const Vector3d& normal_L, const Vector3d& near_L) const;
   TipAxes tip_;
+  double pitch_ = 0;
   std::array<Taxel, kTaxelRows * kTaxelColumns> taxels_;
 };
 
