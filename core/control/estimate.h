@@ -1,7 +1,8 @@
 #pragma once
 
 /// The controller's picture of the world: filtered sensor readings and what kinematics makes of
-/// them.
+/// them. What comes seldom or in cells is followed in between: the object's pose by the fingers
+/// that hold it (finger_motion.h), a contact within the cell of a taxel (taxel_contact.h).
 
 #include <array>
 
