@@ -21,8 +21,9 @@ void Session::Impl::Feel() {
 
 void Session::Impl::FeelFriction() {
   const bool known = felt_friction.known(parameters.control);
-  felt_friction.Update(estimator.estimate(), tasks, controller.commanded_forces(),
-                       parameters.control, dt);
+  const JointVector weight =
+      GravityTorque(hand, estimator.estimate().kinematics, parameters.gravity_W);
+  felt_friction.Update(hand, estimator.estimate(), tasks, torque - weight, parameters.control, dt);
   if (known || !felt_friction.known(parameters.control)) return;
   CountOn();
   log.Emit(tick, EventKind::kFriction, -1, felt_friction.felt(),
