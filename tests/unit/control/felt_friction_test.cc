@@ -29,15 +29,21 @@ struct Scene {
     FingerTask& task = tasks[static_cast<std::size_t>(finger)];
     task.mode = FingerMode::kSlide;
     task.v_W = speed * along;
-    const Vector3d force = tangential * along - 0.3 * f.normal_W;
-    const Eigen::VectorXd push = f.J.transpose() * force;
     const Eigen::VectorXd qdot = f.J.completeOrthogonalDecomposition().solve(task.v_W);
     const auto& joints = hand.fingers[static_cast<std::size_t>(finger)].joints;
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      rate[joints[k]] = qdot[static_cast<Eigen::Index>(k)];
+    Push(tangential);
+  }
+  void Push(double tangential) {
+    FingerEstimate& f = slider();
+    const Vector3d along = RotationFromZ(f.normal_W).col(0);
+    const Eigen::VectorXd push = f.J.transpose() * (tangential * along - 0.3 * f.normal_W);
+    const auto& joints = hand.fingers[static_cast<std::size_t>(finger)].joints;
     for (std::size_t k = 0; k < joints.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      rate[joints[k]] = qdot[at];
+      const auto j = static_cast<std::size_t>(joints[k]);
       torque[joints[k]] =
-          push[at] + hand.joints[static_cast<std::size_t>(joints[k])].damping * qdot[at];
+          push[static_cast<Eigen::Index>(k)] + hand.joints[j].damping * rate[joints[k]];
     }
   }
   FingerEstimate& slider() { return estimate.fingers[static_cast<std::size_t>(finger)]; }
@@ -83,8 +89,10 @@ TEST(FeltFriction, AFingerThatRestsOrHardlyTouchesTellsNothing) {
 
 TEST(FeltFriction, FollowsWhatIsFeltLater) {
   FeltFriction friction;
-  Scene(0.01, 0.24).Run(2.0, &friction);
-  Scene(0.01, 0.12).Run(10.0, &friction);
+  Scene scene(0.01, 0.24);
+  scene.Run(2.0, &friction);
+  scene.Push(0.12);
+  scene.Run(10.0, &friction);
   EXPECT_NEAR(friction.felt(), 0.4, 0.01);
 }
 
