@@ -16,10 +16,10 @@
 #include "core/common/random.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/kinematics.h"
+#include "core/hand/taxels.h"
 #include "core/sensing/fingertip_errors.h"
 #include "core/sensing/noise.h"
 #include "core/sensing/sensor_reading.h"
-#include "core/hand/taxels.h"
 #include "core/world/world.h"
 
 namespace regrasp {
