@@ -12,7 +12,9 @@ struct ControlParameters {
   double force_filter_s = 0.010;
   double contact_filter_s = 0.030;
   double pose_filter_s = 0.050;
-  double margin_filter_s = 0.050;  ///< load margins
+  double slow_pose_filter_s = 1.0;    ///< object pose from a sensor with a rate
+  double slow_pose_velocity_s = 0.2;  ///< the object's motion by which its late pose is advanced
+  double margin_filter_s = 0.050;     ///< load margins
   /// Contact point from the sensed normal and the fingertip's known shape.
   bool contact_from_normal = true;
   double fingertip_stiffness = 4000;  ///< how far a fingertip is pressed in per force [N/m]
@@ -58,7 +60,7 @@ struct ControlParameters {
   double feel_speed = 0.002;    ///< it slides from this speed on [m/s]
   double feel_force = 0.1;      ///< ... pressed on with this force [N]
   double feel_memory_s = 2.0;   ///< the mean is over about so much of the last sliding
-  double feel_enough_s = 0.1;   ///< ... which is known after so much
+  double feel_enough_s = 0.14;  ///< ... which is known after so much
   double feel_least = 0.1;      ///< coefficient counted on, at least
   // Grasping.
   double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]

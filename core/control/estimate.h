@@ -1,13 +1,16 @@
 #pragma once
 
 /// The controller's picture of the world: filtered sensor readings and what kinematics makes of
-/// them.
+/// them. What comes seldom or in cells is followed in between: the object's pose by the fingers
+/// that hold it (finger_motion.h), a contact within the cell of a taxel (taxel_contact.h).
 
 #include <array>
 
 #include "core/common/fields.h"
 #include "core/common/finger_set.h"
 #include "core/control/control_parameters.h"
+#include "core/control/finger_motion.h"
+#include "core/control/taxel_contact.h"
 #include "core/hand/kinematics.h"
 #include "core/quality/grasp.h"
 #include "core/sensing/sensor_reading.h"
@@ -58,7 +61,10 @@ class StateEstimator {
   StateEstimator(const HandModel& hand, double dt) : hand_(&hand), dt_(dt) {}
   /// Forgets everything.
   void Reset() { *this = StateEstimator(*hand_, dt_); }
-  const Estimate& Update(const SensorReading& reading, const ControlParameters& parameters);
+  /// One tick. `holding`: the fingers that hold the object, without sliding. Where the pose comes
+  /// seldom (SensorReading::object_rate_hz) they tell how it moves in between.
+  const Estimate& Update(const SensorReading& reading, const ControlParameters& parameters,
+                         FingerSet holding = {});
   const Estimate& estimate() const { return estimate_; }
   template <typename V>
   void Fields(V& v) {
@@ -70,6 +76,10 @@ class StateEstimator {
     v("p_WO", e.p_WO);
     v("q_WO", e.q_WO);
     v("object_scale", e.object_scale);
+    v("num_poses", num_poses_, kCountOrNone);
+    v("pose_age_s", pose_age_s_);
+    v("velocity", velocity_W_);
+    v("spin", spin_W_);
     if constexpr (V::kLoads) {
       if (!started_) return;
       if (e.q.size() != hand_->num_joints() || e.fingers.size() != hand_->fingers.size())
@@ -87,12 +97,23 @@ class StateEstimator {
       v("n_L", n_L);
     }
   };
+  void UpdatePose(const SensorReading& reading, const ControlParameters& parameters,
+                  const RigidStep& step);
+  /// How the object moved while the joints moved by `dq`, by the fingers in `holding`.
+  RigidStep StepOf(const JointVector& dq, FingerSet holding) const;
+  /// The normal of contact `i` in the tip's frame, from a taxel (taxel_contact.h).
+  Vector3d NormalFromTaxel(int i, const Vector3d& p_L, const SensorReading& reading, bool fresh,
+                           const RigidStep& step, const Vector3d& p_WF_before);
   /// Everything that follows from the joint angles and the contact points.
   void Derive();
   const HandModel* hand_;
   double dt_;
   bool started_ = false;
   std::array<ContactFilter, kMaxFingers> contact_{};
+  std::array<TaxelContact, kMaxFingers> taxels_;  // made when a reading says their pitch
+  int num_poses_ = 0;                             // of a pose sensor with a rate
+  double pose_age_s_ = 0;                         // in the reading before
+  Vector3d velocity_W_ = Vector3d::Zero(), spin_W_ = Vector3d::Zero();  // by the fingers
   Estimate estimate_;
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 
-/// How rough the object is, felt by fingers that slide over it: while one does, the tangential
-/// force that moves it is its friction, mu = |f_t| / f_n. The mean over what has slid lately, less
-/// a share for what is uncertain, is the coefficient that forces and load margins count on.
+/// How rough the object is, felt by fingers that slide over it: while one does, the force with
+/// which it is moved along is its friction, mu = f_v / f_n, f_v the tip's force along the velocity.
+/// The tip's force is what the joint torques leave after the weight and the joints' own damping:
+/// Jᵀ f = tau - tau_gravity - d qdot. The mean over what has slid lately, less a share for what is
+/// uncertain, is the coefficient that forces and load margins count on.
 
 #include "core/control/hybrid_controller.h"
 
@@ -10,15 +12,14 @@ namespace regrasp {
 
 class FeltFriction {
  public:
-  /// One tick. `commanded`: force on the object asked of each finger [N].
-  void Update(const Estimate& estimate, const FingerTasks& tasks,
-              const FixedVector<Vector3d, kMaxFingers>& commanded,
-              const ControlParameters& parameters, double dt);
+  /// One tick. `torque`: of the joints, less what bears the hand's weight [N m].
+  void Update(const HandModel& hand, const Estimate& estimate, const FingerTasks& tasks,
+              const JointVector& torque, const ControlParameters& parameters, double dt);
   /// Fingers have slid for long enough.
   bool known(const ControlParameters& parameters) const {
     return felt_s_ >= parameters.feel_enough_s;
   }
-  double felt() const { return mean_; }      ///< mean of |f_t| / f_n; 0: nothing has slid
+  double felt() const { return mean_; }      ///< mean of f_v / f_n; 0: nothing has slid
   double felt_s() const { return felt_s_; }  ///< time over which it was felt [s]
   /// What to count on: `share` of what was felt, friction_estimate until it is known.
   double Counted(double share, const ControlParameters& parameters) const;
@@ -27,11 +28,13 @@ class FeltFriction {
     v("mean", mean_);
     v("felt_s", felt_s_);
     v("sliding_s", sliding_s_);
+    v("q_before", q_before_);
   }
 
  private:
   double mean_ = 0, felt_s_ = 0;
   std::array<double, kMaxFingers> sliding_s_{};  // in a row, by finger
+  JointVector q_before_;                         // in the tick before [rad]
 };
 
 }  // namespace regrasp

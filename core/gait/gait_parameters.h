@@ -44,9 +44,9 @@ struct GaitParameters {
       0.25;  ///< of the spread of felt normals about a contact: its normal may be so far off
   double careful_s =
       0.1;  ///< plan: load transfer where the margin without the finger is scarce [s]
-  double friction_share = 0.7;  ///< plan: of the friction felt that is counted on; 0: none is felt
-  int rubs = 3;                 ///< plan: so many leaving fingers slide first, to feel it
-  double rub_s = 0.25;          ///< ... each for so long [s]
+  double friction_share = 0.85;  ///< plan: of the friction felt that is counted on; 0: none is felt
+  int rubs = 3;                  ///< plan: so many leaving fingers slide first, to feel it
+  double rub_s = 0.25;           ///< ... each for so long [s]
   // Object motion.
   double speed_rad_s = 0.3490658504;  ///< object speed during its motion phase (20 deg/s)
   double move_speed = 0.010;          ///< object speed along a shift [m/s]

@@ -32,6 +32,10 @@ struct SensorReading {
   JointVector q;                                          ///< joint angles [rad]
   Vector3d p_WO = Vector3d::Zero();                       ///< object position [m]
   Quaterniond q_WO = Quaterniond::Identity();             ///< object orientation
+  // What the sensors are, and how old the pose is.
+  double object_rate_hz = 0;  ///< the pose comes at this rate; 0: with every reading
+  double object_age_s = 0;    ///< since the pose was sampled [s]
+  double taxel_pitch_m = 0;   ///< > 0: fingertips report taxels this far apart (core/hand/taxels.h)
   template <typename V>
   void Fields(V& v) {
     v("tick", tick);
@@ -39,6 +43,9 @@ struct SensorReading {
     v("q", q);
     v("p_WO", p_WO);
     v("q_WO", q_WO);
+    v("object_rate_hz", object_rate_hz);
+    v("object_age_s", object_age_s);
+    v("taxel_pitch_m", taxel_pitch_m);
   }
 };
 

@@ -97,6 +97,8 @@ void Sensors::SetNoise(const NoiseLevels& levels) {
 
 const SensorReading& Sensors::Read(std::int64_t tick, const WorldState& truth) {
   reading_.tick = tick;
+  reading_.object_rate_hz = levels_.object_rate_hz;
+  reading_.taxel_pitch_m = levels_.taxel_pitch_m;
   const std::int64_t sample = PeriodIndex(tick, dt_, kSensorRateHz);
   if (sample == last_sample_) return reading_;
   last_sample_ = sample;
@@ -151,7 +153,11 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
         levels_.object_drift_m * std::sqrt(sample_s()) * object_drift_stream_.Normal3();
   if (levels_.object_rate_hz > 0) {
     const std::int64_t frame = PeriodIndex(tick, dt_, levels_.object_rate_hz);
-    if (frame == last_pose_frame_) return;
+    if (frame == last_pose_frame_) {
+      reading_.object_age_s =
+          static_cast<double>(tick - pose_frames_[num_pose_frames_ - 1].tick) * dt_;
+      return;
+    }
     last_pose_frame_ = frame;
   }
   const int kept = levels_.object_rate_hz > 0
@@ -160,6 +166,7 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   for (int i = kept - 1; i > 0; --i) pose_frames_[i] = pose_frames_[i - 1];
   num_pose_frames_ = std::min(num_pose_frames_ + 1, kept);
   Pose& newest = pose_frames_[0];
+  newest.tick = tick;
   newest.p = truth.p_WO + translation + levels_.object_bias_m * object_bias_ + object_drift_;
   newest.q = truth.q_WO;
   if (rotation != Vector3d::Zero())
@@ -167,6 +174,7 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   const Pose& reported = pose_frames_[num_pose_frames_ - 1];
   reading_.p_WO = reported.p;
   reading_.q_WO = reported.q;
+  reading_.object_age_s = static_cast<double>(tick - reported.tick) * dt_;
 }
 
 }  // namespace regrasp

@@ -16,10 +16,10 @@
 #include "core/common/random.h"
 #include "core/hand/hand_model.h"
 #include "core/hand/kinematics.h"
+#include "core/hand/taxels.h"
 #include "core/sensing/fingertip_errors.h"
 #include "core/sensing/noise.h"
 #include "core/sensing/sensor_reading.h"
-#include "core/sensing/taxels.h"
 #include "core/world/world.h"
 
 namespace regrasp {
@@ -82,10 +82,12 @@ class Sensors {
 
  private:
   struct Pose {
+    std::int64_t tick = 0;  // in which it was sampled
     Vector3d p = Vector3d::Zero();
     Quaterniond q = Quaterniond::Identity();
     template <typename V>
     void Fields(V& v) {
+      v("tick", tick);
       v("p", p);
       v("q", q);
     }

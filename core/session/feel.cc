@@ -8,7 +8,9 @@ void Session::Impl::Feel() {
   if (!parameters.gait.map) felt.Reset();
   const Estimate& e = estimator.estimate();
   // The sensed pose lags behind the contacts, which move with the joint angles.
-  const double late_s = parameters.control.pose_filter_s - parameters.control.joint_filter_s;
+  const double late_s = sensors.noise().object_rate_hz > 0
+                            ? 0
+                            : parameters.control.pose_filter_s - parameters.control.joint_filter_s;
   const Quaterniond q_OW = (FromRotationVector(late_s * motion.w_W) * e.q_WO).conjugate();
   const Vector3d p_WO = e.p_WO + late_s * motion.v_W;
   for (const FingerEstimate& f : e.fingers)
@@ -19,8 +21,9 @@ void Session::Impl::Feel() {
 
 void Session::Impl::FeelFriction() {
   const bool known = felt_friction.known(parameters.control);
-  felt_friction.Update(estimator.estimate(), tasks, controller.commanded_forces(),
-                       parameters.control, dt);
+  const JointVector weight =
+      GravityTorque(hand, estimator.estimate().kinematics, parameters.gravity_W);
+  felt_friction.Update(hand, estimator.estimate(), tasks, torque - weight, parameters.control, dt);
   if (known || !felt_friction.known(parameters.control)) return;
   CountOn();
   log.Emit(tick, EventKind::kFriction, -1, felt_friction.felt(),

@@ -50,6 +50,8 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.normal_force_integral", "1/s", 0, 50, "Integral gain of a sliding finger's normal force.", kOurs, [](P& p) { return &p.control.normal_force_integral; }),
   Row("control.pinv_damping", "m", 0, 0.1, "Damping of the pseudo-inverse of the finger Jacobian.", kMeasured, [](P& p) { return &p.control.pinv_damping; }),
   Row("control.pose_filter_s", "s", 0, 1, "Time constant of the low pass on the object pose.", kMeasured, [](P& p) { return &p.control.pose_filter_s; }),
+  Row("control.slow_pose_filter_s", "s", 0, 10, "Time constant with which a pose that comes at a rate of its own corrects the one the fingers that hold tell.", kMeasured, [](P& p) { return &p.control.slow_pose_filter_s; }),
+  Row("control.slow_pose_velocity_s", "s", 0, 10, "Time constant of the object's velocity by which such a pose, late as it is, is advanced.", kMeasured, [](P& p) { return &p.control.slow_pose_velocity_s; }),
   Row("control.position_error_limit", "m", 0.0005, 0.1, "The object's position error enters the force law up to this length.", kMeasured, [](P& p) { return &p.control.position_error_limit; }),
   Row("control.position_integral", "N/(m s)", 0, 3000, "Integral gain from object position error to force.", kMeasured, [](P& p) { return &p.control.position_integral; }),
   Row("control.position_stiffness", "N/m", 0, 2000, "Proportional gain from object position error to force.", kMeasured, [](P& p) { return &p.control.position_stiffness; }),

@@ -78,7 +78,10 @@ Activity* Session::Impl::Running(SessionState in) {
 }
 
 void Session::Impl::Sense() {
-  estimator.Update(sensors.Read(tick, world.state()), parameters.control);
+  FingerSet holding;
+  for (int i = 0; i < hand.num_fingers(); ++i)
+    if (tasks[i].mode == FingerMode::kHold) holding.add(i);
+  estimator.Update(sensors.Read(tick, world.state()), parameters.control, holding);
 }
 
 void Session::Impl::HoldAll() {

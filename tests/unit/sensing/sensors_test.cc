@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/hand/scenario.h"
-#include "core/sensing/taxels.h"
+#include "core/hand/taxels.h"
 
 namespace regrasp {
 namespace {

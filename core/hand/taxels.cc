@@ -1,4 +1,4 @@
-#include "core/sensing/taxels.h"
+#include "core/hand/taxels.h"
 
 #include <algorithm>
 #include <cmath>
