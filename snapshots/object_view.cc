@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/common/box_corners.h"
+
 namespace regrasp {
 namespace {
 
@@ -25,9 +27,8 @@ ObjectView MakeView(const Vector3d& to_viewer, const Vector3d& up, Point2 centre
 ObjectView ViewOfCube(const Vector3d& to_viewer, double half_mm, const Box& box) {
   ObjectView view = MakeView(to_viewer, Vector3d::UnitZ(), {0, 0}, 1);
   Range across, down;  // of the cube's corners, at 1 unit per mm
-  for (int i = 0; i < 8; ++i) {
-    const Point2 corner =
-        view.At(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) * half_mm / kMm);
+  for (const Vector3d& corner_O : BoxCorners(Vector3d::Constant(half_mm / kMm))) {
+    const Point2 corner = view.At(corner_O);
     across.Add(corner.x);
     down.Add(corner.y);
   }
