@@ -86,6 +86,13 @@ CanvasSize SizeOf(const PlotOptions& options, double narrow_height) {
   return size;
 }
 
+CanvasSize Lower(CanvasSize size, double height) {
+  if (!size.narrow && size.logical_width < kLogicalWidth)
+    size.height_px = std::min(
+        size.height_px, static_cast<int>(std::lround(height * size.width_px / size.logical_width)));
+  return size;
+}
+
 Canvas::Canvas(const CanvasSize& size, std::string path)
     : Canvas(size, SizeOf(size, CheckedSuffix(path), path), path) {}
 

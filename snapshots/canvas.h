@@ -35,6 +35,9 @@ struct CanvasSize {
 /// width leaves no room for legends beside the axes, a picture that has a narrow layout, of
 /// `narrow_height` logical units, gets that; one that has none (0) shrinks with its text.
 CanvasSize SizeOf(const PlotOptions& options, double narrow_height = 0);
+/// A sheet on paper that is wide, but less than a screen, becomes no taller than `height` logical
+/// units; others stay.
+CanvasSize Lower(CanvasSize size, double height);
 /// Whether a picture that has a narrow layout gets it.
 bool Narrow(const PlotOptions& options);
 

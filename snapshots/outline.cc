@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
+
+#include "core/common/box_corners.h"
 
 namespace regrasp {
 namespace {
@@ -40,9 +43,7 @@ ObjectMesh RoundMesh(double radius, double half_length) {
 
 ObjectMesh BoxMesh(const Vector3d& h) {
   ObjectMesh mesh;
-  for (int i = 0; i < 8; ++i)
-    mesh.vertices_O.emplace_back(i & 1 ? h.x() : -h.x(), i & 2 ? h.y() : -h.y(),
-                                 i & 4 ? h.z() : -h.z());
+  std::ranges::copy(BoxCorners(h), std::back_inserter(mesh.vertices_O));
   for (const auto& f : std::array<std::array<int, 4>, 6>{
            {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}}) {
     mesh.triangles.emplace_back(f[0], f[1], f[2]);

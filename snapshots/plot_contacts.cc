@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
-#include "core/session/shape_judge.h"
-#include "core/shape/felt_mesh.h"
-#include "core/world/true_surface.h"
 #include "snapshots/axes.h"
+#include "snapshots/felt_picture.h"
 #include "snapshots/measures.h"
-#include "snapshots/outline.h"
+#include "snapshots/object_view.h"
 #include "snapshots/plots.h"
 #include "snapshots/sphere_fit.h"
 #include "snapshots/timeline.h"
@@ -20,7 +17,7 @@ namespace {
 
 constexpr double kMm = 1e3;
 constexpr std::size_t kMostPointsDrawn = 5000;
-constexpr double kTop = 100, kNarrowHeight = 1080;  // of the sheet
+constexpr double kHeight = 920, kNarrowHeight = 1080;  // of the sheet
 
 struct Contact {
   int finger = 0;
@@ -56,95 +53,7 @@ Cloud Collect(std::span<const Frame> frames, const HandModel& hand) {
   return cloud;
 }
 
-/// Orthographic view: right, up and towards the viewer in O; p [m] is drawn in mm.
-struct View {
-  Matrix3d R_VO;  ///< rows: right, up, to the viewer
-  Point2 centre;  ///< of the sheet
-  double per_mm;  ///< logical units
-  Point2 At(const Vector3d& p_O) const {
-    const Vector3d v = R_VO * p_O * kMm;
-    return centre + Point2(v.x(), -v.y()) * per_mm;
-  }
-  Vector3d ToViewer() const { return R_VO.row(2); }
-};
-
-View MakeView(const Vector3d& to_viewer, const Vector3d& up, Point2 centre, double per_mm) {
-  View view;
-  const Vector3d z = to_viewer.normalized(), x = up.cross(z).normalized();
-  view.R_VO << x.transpose(), z.cross(x).transpose(), z.transpose();
-  view.centre = centre;
-  view.per_mm = per_mm;
-  return view;
-}
-
-void DrawObject(Canvas* canvas, const View& view, const ObjectMesh& mesh,
-                std::span<const SurfaceLine> lines, bool front) {
-  for (const SurfaceLine& line : lines)
-    if (line.FacesViewer(view.ToViewer()) == front)
-      canvas->Line(view.At(line.a_O), view.At(line.b_O),
-                   {front ? Colour{172, 172, 172} : Colour{222, 222, 222}, front ? 1.2 : 1.0});
-  if (!front) return;
-  for (const SurfaceLine& line : Silhouette(mesh, view.ToViewer()))
-    canvas->Line(view.At(line.a_O), view.At(line.b_O), {Colour{120, 120, 120}, 2});
-}
-
-/// The felt surface, and by how much each vertex is off the true one [m].
-struct FeltPicture {
-  FeltMesh mesh;
-  std::vector<double> errors;
-  double scale = 0;  ///< error that has the full colour [m]
-  ShapeErrors judged;
-};
-
-constexpr int kDivisions = 5;
-constexpr double kKnown = 0.2;  // farther from what was felt the surface is not drawn [rad]
-
-FeltPicture PictureOf(const FeltSurface& felt, const ObjectModel& object) {
-  FeltPicture picture;
-  const TrueSurface truth(object);
-  picture.mesh = MeshOf(felt, kDivisions);
-  std::vector<double> sizes;
-  for (const SurfacePoint& point : picture.mesh.vertices) {
-    picture.errors.push_back(truth.At(point.p_O).distance);
-    if (point.unknown < kKnown) sizes.push_back(std::abs(picture.errors.back()));
-  }
-  picture.judged = JudgeShape(felt, truth);
-  if (sizes.empty()) return picture;
-  const auto most = sizes.begin() + static_cast<std::ptrdiff_t>(0.95 * (sizes.size() - 1));
-  std::nth_element(sizes.begin(), most, sizes.end());
-  constexpr std::array kScales = {0.1e-3, 0.2e-3, 0.5e-3, 1e-3, 2e-3, 5e-3};
-  const auto scale = std::ranges::find_if(kScales, [&](double s) { return s >= *most; });
-  picture.scale = scale == kScales.end() ? kScales.back() : *scale;
-  return picture;
-}
-
-/// Blue inside the true surface, white on it, orange outside; `share` of the full colour, -1 to 1.
-Colour ErrorColour(double share) {
-  return Tint(share < 0 ? kBlue : kVermillion, 1 - std::min(1.0, std::abs(share)));
-}
-
-void DrawFelt(Canvas* canvas, const View& view, const FeltPicture& picture) {
-  for (const Eigen::Vector3i& t : picture.mesh.triangles) {
-    std::array<Point2, 3> corners;
-    Vector3d normal = Vector3d::Zero();
-    double error = 0, unknown = 0;
-    for (int k = 0; k < 3; ++k) {
-      const SurfacePoint& point = picture.mesh.vertices[t[k]];
-      corners[k] = view.At(point.p_O);
-      normal += point.normal_O;
-      error += picture.errors[t[k]] / 3;
-      unknown = std::max(unknown, point.unknown);
-    }
-    const double facing = normal.normalized().dot(view.ToViewer());
-    if (unknown > kKnown || facing <= 0) continue;
-    // A little shade, so that the shape is seen.
-    const Colour colour = Shade(ErrorColour(error / picture.scale), 0.25 * (1 - facing));
-    canvas->Polygon(corners, colour);
-    for (int k = 0; k < 3; ++k) canvas->Line(corners[k], corners[(k + 1) % 3], {colour, 1});
-  }
-}
-
-void DrawCloud(Canvas* canvas, const View& view, const Cloud& cloud, const ObjectMesh& mesh,
+void DrawCloud(Canvas* canvas, const ObjectView& view, const Cloud& cloud, const ObjectMesh& mesh,
                std::span<const SurfaceLine> lines, const std::optional<SphereFit>& fit, double size,
                const FeltPicture* felt = nullptr) {
   // Far half first: far lines, far points, near lines, near points. The object's centre separates
@@ -174,88 +83,6 @@ void DrawCloud(Canvas* canvas, const View& view, const Cloud& cloud, const Objec
   }
 }
 
-/// The three far walls of the cube |x|, |y|, |z| <= half, with grid, ticks and names of the axes.
-void DrawCube(Canvas* canvas, const View& view, const Axis& axis) {
-  const Vector3d toward = view.ToViewer();
-  const double half = axis.hi / kMm;
-  Vector3d far;  // corner of the cube farthest from the viewer
-  for (int k = 0; k < 3; ++k) far[k] = toward[k] > 0 ? -half : half;
-  auto ticks =
-      axis.Ticks();  // without those at the cube's corners, where the values of two edges meet
-  std::erase_if(ticks, [&](double tick) { return std::abs(tick) > 0.94 * axis.hi; });
-  for (int wall = 0; wall < 3; ++wall) {
-    const int u = (wall + 1) % 3, v = (wall + 2) % 3;
-    const auto corner = [&](double cu, double cv) {
-      Vector3d p = far;
-      p[u] = cu;
-      p[v] = cv;
-      return view.At(p);
-    };
-    const std::vector<Point2> wall_corners = {corner(-half, -half), corner(half, -half),
-                                              corner(half, half), corner(-half, half)};
-    canvas->Polygon(wall_corners, wall == 2 ? Colour{246, 246, 246} : Colour{250, 250, 250});
-    for (double tick : ticks) {
-      canvas->Line(corner(tick / kMm, -half), corner(tick / kMm, half), {kGridGrey, 1});
-      canvas->Line(corner(-half, tick / kMm), corner(half, tick / kMm), {kGridGrey, 1});
-    }
-  }
-  // x and y are written along the near edges of the floor, z along the leftmost upright edge.
-  static constexpr const char* kNames[] = {"x [mm]", "y [mm]", "z [mm]"};
-  for (int k = 0; k < 3; ++k) {
-    Vector3d edge = -far;
-    edge[2] = -half;
-    if (k == 2) {
-      edge = far;
-      // Of the two edges between a far and a near wall take the one further left.
-      Vector3d other = far;
-      edge[0] = -far[0];
-      other[1] = -far[1];
-      if (view.At(other).x < view.At(edge).x) edge = other;
-    }
-    Vector3d from = edge, to = edge;
-    from[k] = -half;
-    to[k] = half;
-    const Point2 a = view.At(from), b = view.At(to), middle = (a + b) * 0.5;
-    canvas->Line(a, b, {kInk, 1.5});
-    // Ticks point away from the cube's centre on the sheet, perpendicular to the edge.
-    Point2 out(-(b - a).y, (b - a).x);
-    out *= 1.0 / std::max(1e-9, cv::norm(out));
-    if (out.dot(middle - view.centre) < 0) out = -out;
-    for (double tick : ticks) {
-      Vector3d p = edge;
-      p[k] = tick / kMm;
-      const Point2 at = view.At(p);
-      canvas->Line(at, at + out * 7, {kInk, 1.5});
-      canvas->Text(at + out * (k == 2 ? 32 : 26), axis.TickText(tick),
-                   {.size = 18, .align_x = AlignX::kCentre});
-    }
-    canvas->Text(middle + out * (k == 2 ? 74 : 78), kNames[k],
-                 {.size = 20, .align_x = AlignX::kCentre, .upwards = k == 2});
-  }
-}
-
-/// Scale of the colours and figures of the felt surface.
-std::vector<LegendEntry> FeltFacts(const FeltPicture& picture) {
-  const double scale = picture.scale * kMm;
-  std::vector<LegendEntry> facts = {
-      {fmt::format("−{:.1f} to {:.1f} mm off", scale, scale), [](Canvas* c, Point2 m) {
-         constexpr int kSteps = 22;
-         for (int i = 0; i < kSteps; ++i)
-           c->FillBox({m.x - 22 + 44.0 * i / kSteps, m.y - 8, 44.0 / kSteps + 0.5, 16},
-                      ErrorColour(2.0 * i / (kSteps - 1) - 1));
-       }}};
-  const ShapeErrors& judged = picture.judged;
-  facts.push_back({fmt::format("touched  {:.0f} % of it", 100 * judged.touched), {}});
-  if (judged.cells > 0) {
-    facts.push_back({fmt::format("rms error  {:.2f} mm", judged.rms_m * kMm), {}});
-    const double bias = judged.mean_m * kMm;
-    facts.push_back({fmt::format("bias  {:.2f} mm", std::abs(bias) < 0.005 ? 0 : bias), {}});
-    facts.push_back(
-        {fmt::format("normals off by  {:.1f}°", judged.normal_rad * 180 / std::numbers::pi), {}});
-  }
-  return facts;
-}
-
 std::vector<LegendEntry> FitFacts(const std::optional<SphereFit>& fit, const ObjectModel& object) {
   if (!fit) return {{"the points do not", {}}, {"determine a sphere", {}}};
   std::vector<LegendEntry> facts = {
@@ -276,7 +103,7 @@ struct Content {
 };
 
 std::vector<LegendGroup> Legends(const Content& content, const HandModel& hand,
-                                 const ObjectModel& object) {
+                                 const ObjectModel& object, double top) {
   std::vector<LegendEntry> fingers;
   for (int f = 0; f < hand.num_fingers(); ++f) {
     const FingerLook look = LookOfFinger(f);
@@ -291,7 +118,7 @@ std::vector<LegendGroup> Legends(const Content& content, const HandModel& hand,
   std::vector<LegendEntry> shapes = {LineEntry("true outline", {Colour{120, 120, 120}, 2})};
   if (content.fit) shapes.push_back(LineEntry("sphere fit", {kInk, 1.8, {9, 6}}));
   std::vector<LegendGroup> groups = {
-      {"finger, points", fingers, kTop + 10}, {"", marks}, {"", shapes}};
+      {"finger, points", fingers, top + 10}, {"", marks}, {"", shapes}};
   if (content.felt) groups.push_back({"surface as felt", FeltFacts(*content.felt)});
   if (content.about_sphere)
     groups.push_back({"least-squares sphere", FitFacts(content.fit, object)});
@@ -316,28 +143,19 @@ struct Places {
       big = {-10, top - 10, canvas.width(), flats[0].y + 10 - top};
       return;
     }
-    const double edge = (canvas.height() - 110 - 2 * 92) / 2;  // of a square panel
-    const double right = layout.left + layout.width;
-    for (int i = 0; i < 2; ++i) flats[i] = {right - edge, 106 + i * (edge + 92), edge, edge};
-    big = {20, kTop, flats[0].x - 120, canvas.height() - 110};
+    const double right = layout.left + layout.width, first = top + 24;
+    constexpr double kBetween = 92, kBelow = 70;  // for names and values of the axes
+    const double edge = std::min((canvas.height() - first - kBetween - kBelow) / 2, 0.32 * right);
+    for (int i = 0; i < 2; ++i)
+      flats[i] = {right - edge, first + i * (edge + kBetween), edge, edge};
+    big = {20, top, flats[0].x - 120, canvas.height() - top - 10};
   }
 };
 
 void DrawPerspective(Canvas* canvas, const Box& box, const Content& content, const Axis& axis,
                      const ObjectMesh& mesh, std::span<const SurfaceLine> lines) {
   canvas->Clip({0, box.y, box.br().x + 20, canvas->height() - box.y});
-  View view = MakeView({-0.85, -1.2, 0.72}, Vector3d::UnitZ(), {0, 0}, 1);
-  Range across, down;  // of the cube's corners, at 1 unit per mm
-  for (int i = 0; i < 8; ++i) {
-    const Point2 corner =
-        view.At(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) * axis.hi / kMm);
-    across.Add(corner.x);
-    down.Add(corner.y);
-  }
-  // Room for tick values and names: 90 on the left and below.
-  view.per_mm = std::min((box.width - 100) / (across.hi - across.lo),
-                         (box.height - 100) / (down.hi - down.lo));
-  view.centre = {box.x + 95 + (box.width - 100) / 2, box.y + 10 + (box.height - 100) / 2};
+  const ObjectView view = ViewOfCube({-0.85, -1.2, 0.72}, axis.hi, box);
   DrawCube(canvas, view, axis);
   DrawCloud(canvas, view, content.cloud, mesh, lines, content.fit, content.felt ? 1.6 : 3.0,
             content.felt ? &*content.felt : nullptr);
@@ -365,8 +183,7 @@ void DrawFlat(Canvas* canvas, const Box& box, int which, const Content& content,
             MakeView(flat.to_viewer, flat.up, panel.At(0, 0), box.width / (axis.hi - axis.lo)),
             content.cloud, mesh, lines, content.fit, 2.2);
   canvas->Unclip();
-  canvas->Text(canvas->narrow() ? Point2(box.x, box.y - 14) : Point2(box.x + 10, box.y + 18),
-               flat.title, {.size = 17, .colour = kGrey, .halo = 2});
+  canvas->Text({box.x, box.y - 14}, flat.title, {.size = 17, .colour = kGrey, .halo = 2});
   DrawFrame(canvas, panel);
 }
 
@@ -392,25 +209,27 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
     throw std::runtime_error(path + ": nothing to draw: no finger held the object in these frames");
   std::vector<Vector3d> points;
   for (const Contact& contact : content.cloud.points) points.push_back(contact.p_OC);
-  if (felt != nullptr && felt->touched_cells() > 0) content.felt = PictureOf(*felt, object);
+  if (felt != nullptr && felt->touched_cells() > 0) content.felt = JudgeFelt(*felt, object);
   content.about_sphere = object.kind == ObjectModel::Kind::kSphere || !content.felt;
   if (content.about_sphere) content.fit = FitSphere(points);
 
-  Canvas canvas(SizeOf(options, kNarrowHeight), path);
+  Canvas canvas(Lower(SizeOf(options, kNarrowHeight), kHeight), path);
   const ObjectMesh mesh = MeshOf(object);
   const auto lines = ShapeLines(mesh);
   const double top = DrawTitle(
       &canvas,
       options.title.empty() ? "Contact points in the object's frame, as sensed" : options.title,
       Facts(frames, hand, object.name));
-  const std::vector<LegendGroup> legends = Legends(content, hand, object);
+  const std::vector<LegendGroup> legends = Legends(content, hand, object, top);
   const Layout layout(canvas, legends);
   layout.DrawLegends(&canvas, legends);
   const Places places(canvas, layout, top);
   const double half = HalfOf(points, object);
-  const Axis axis = NiceAxis(-half, half, 5, false, "");
-  DrawPerspective(&canvas, places.big, content, axis, mesh, lines);
-  const Axis flat = canvas.narrow() ? NiceAxis(-half, half, 3, false, "") : axis;
+  const Axis axis = NiceAxis(-half, half, 5, false, ""),
+             coarse = NiceAxis(-half, half, 3, false, "");
+  DrawPerspective(&canvas, places.big, content, places.big.width < 450 ? coarse : axis, mesh,
+                  lines);
+  const Axis& flat = canvas.narrow() ? coarse : axis;
   for (int i = 0; i < 2; ++i)
     DrawFlat(&canvas, places.flats[static_cast<std::size_t>(i)], i, content, flat, mesh, lines);
   canvas.Save();

@@ -28,8 +28,9 @@ struct PlotInput {
 /// is no picture of this name.
 void DrawPlot(std::string_view name, const PlotInput& input, const std::string& path);
 
-// Each in its plot_NAME.cc.
-#define REGRASP_ROW(name, Draw, of) void Draw(const PlotInput& input, const std::string& path);
+// DrawContacts in plot_contacts.cc and so on, one for each row.
+#define REGRASP_ROW(name, Name, of) \
+  void Draw##Name(const PlotInput& input, const std::string& path);
 REGRASP_PLOTS(REGRASP_ROW)
 #undef REGRASP_ROW
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/common/box_corners.h"
+
 namespace regrasp {
 namespace {
 
@@ -98,11 +100,8 @@ cv::Rect PixelBounds(const Camera& camera, std::span<const Vector3d> p_W, cv::Si
 }
 
 std::array<Vector3d, 8> CornersOf(const Body& box) {
-  std::array<Vector3d, 8> corners;
-  for (unsigned i = 0; i < 8; ++i)
-    corners[i] = box.X_WB * Vector3d(box.half_extents.x() * (i & 1 ? 1 : -1),
-                                     box.half_extents.y() * (i & 2 ? 1 : -1),
-                                     box.half_extents.z() * (i & 4 ? 1 : -1));
+  std::array<Vector3d, 8> corners = BoxCorners(box.half_extents);
+  for (Vector3d& corner : corners) corner = box.X_WB * corner;
   return corners;
 }
 

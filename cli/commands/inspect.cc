@@ -1,18 +1,18 @@
-// Inspect: what changes nothing.
+// Inspect: the state of the moment.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <iterator>
 #include <numbers>
 
 #include "cli/client/context.h"
 #include "cli/commands/jobs.h"
 #include "cli/commands/parameters.h"
-#include "cli/commands/surface_file.h"
+#include "cli/commands/shape.h"
+#include "cli/commands/watch.h"
 #include "cli/help/wrap.h"
 #include "cli/top/top.h"
-#include "core/files/draft.h"
 
 namespace regrasp::cli {
 namespace {
@@ -23,18 +23,6 @@ constexpr const char* kGroup = "Inspect";
 Style StateStyle(const std::string& state) {
   if (state == "dropped" || state == "faulted") return Style::kBad;
   return state == "idle" ? Style::kPlain : Style::kGood;
-}
-
-std::string JobSummary(const Json& job) {
-  if (job.is_object()) {
-    std::string text = fmt::format("{} {}", Plain(At(job, "id")), Plain(At(job, "method")));
-    if (At(job, "finger").is_string()) text += " " + Plain(At(job, "finger"));
-    text += ", " + Plain(At(job, "state"));
-    if (At(job, "state") == "running")
-      text += fmt::format(" {} %", Fixed(At(job, "progress"), 0, 100));
-    return text;
-  }
-  return job.is_null() ? "none" : Plain(job);
 }
 
 ExitCode Status(Context& context, const Invocation& invocation) {
@@ -214,224 +202,26 @@ ExitCode Truth(Context& context, const Invocation& invocation) {
   return kOk;
 }
 
-void PrintShape(Output& out, const Json& s) {
-  out.Line(fmt::format("object       {}", Plain(At(s, "object"))));
-  out.Line(fmt::format("touched      {} % of all directions ({} of {} cells)",
-                       Fixed(At(s, "touched_fraction"), 1, 100), Plain(At(s, "touched_cells")),
-                       Plain(At(s, "cells"))));
-  out.Line(fmt::format("mean radius  {} mm", Fixed(At(s, "mean_radius_m"), 2, 1e3)));
-  const Json& truth = At(s, "truth");
-  if (truth.is_null()) return out.Line("error        nothing was felt long enough to judge it");
-  out.Line(fmt::format("error        rms {} mm, bias {} mm, normals {}{} (median), by the truth",
-                       Fixed(At(truth, "rms_error_m"), 2, 1e3),
-                       Fixed(At(truth, "mean_error_m"), 2, 1e3),
-                       Fixed(At(truth, "normal_error_rad"), 1, kDegrees), out.Degree()));
-}
-
-ExitCode Shape(Context& context, const Invocation& invocation) {
-  namespace fs = std::filesystem;
-  const std::string target = invocation.Text("output");
-  const std::string suffix = fs::path(target).extension().string();
-  if (invocation.Has("output") && suffix != ".ply" && suffix != ".stl")
-    throw CliError(kUsage, fmt::format("-o {}: the suffix decides: .ply or .stl", target),
-                   "regrasp shape -o felt.ply");
-  Invocation request = invocation;
-  if (invocation.Has("output")) request.params["mesh"] = true;
-  Json answer = context.Call(request);
-  if (invocation.Has("output")) {
-    const Json& mesh = At(answer, "mesh");
-    try {
-      WriteWhole(target, suffix == ".ply" ? PlyText(mesh) : StlText(mesh),
-                 Draft::Existing::kReplace);
-    } catch (const std::exception& e) {
-      throw CliError(kIo, fmt::format("cannot write {}: {}", target, e.what()),
-                     "regrasp shape -o OTHER_FILE");
-    }
-    answer.erase("mesh");
-    answer["path"] = fs::absolute(target).string();
-  }
-  context.Print(answer, [&] {
-    PrintShape(context.out(), answer);
-    if (invocation.Has("output")) context.out().Line(fmt::format("written      {}", target));
-  });
-  return kOk;
-}
-
-ExitCode JobList(Context& context, const Invocation& invocation) {
-  const Json answer = context.Call(invocation);
-  const Json& jobs = At(answer, "jobs");
-  context.PrintRows(answer, {jobs.begin(), jobs.end()}, [&] {
-    Output& out = context.out();
-    if (jobs.empty()) return out.Line("no jobs yet");
-    Table table({">ID", "METHOD", "STATE", ">PROGRESS", ">START TICK", ">END TICK", "RESULT"});
-    for (const auto& job : jobs) {
-      std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
-      if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
-      if (At(job, "end").is_string()) result = Plain(At(job, "end"));
-      if (At(job, "angle_rad").is_number())
-        result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
-      const auto tick = [&](const char* key) {
-        return At(job, key).is_number() ? Plain(At(job, key)) : std::string(out.Dash());
-      };
-      const bool finger = At(job, "finger").is_string();
-      table.Row({Plain(At(job, "id")),
-                 Plain(At(job, "method")) + (finger ? " " + Plain(At(job, "finger")) : ""),
-                 Plain(At(job, "state")), Fixed(At(job, "progress"), 0, 100) + " %",
-                 tick("start_tick"), tick("end_tick"), result});
-    }
-    out.Add(table.Text(out));
-  });
-  return kOk;
-}
-
-ExitCode JobShow(Context& context, const Invocation& invocation) {
-  const Json record = context.Call(invocation);
-  context.Print(record, [&] { PrintJob(context.out(), record); });
-  return kOk;
-}
-
-ExitCode JobWait(Context& context, const Invocation& invocation) {
-  const Json record = WaitForJob(context, invocation.params.at("id"));
-  context.Print(record, [&] { PrintJob(context.out(), record); });
-  return JobExit(record);
-}
-
-std::string EventLine(Output& out, const Json& event) {
-  std::string text =
-      fmt::format("{:>10} s  {:<14}", Fixed(At(event, "t_s"), 3), Plain(At(event, "kind")));
-  if (At(event, "text").is_string()) text += " " + Plain(At(event, "text"));
-  const std::string kind = Plain(At(event, "kind"));
-  const bool bad = kind == "dropped" || kind == "fault";
-  return bad ? out.Paint(text, Style::kBad) : text;
-}
-
-/// One sample of a topic as one line.
-std::string SampleLine(Output& out, const std::string& topic, const Json& sample) {
-  if (topic == "events") return EventLine(out, sample);
-  const Json& time = At(sample, "time_s").is_null() ? At(sample, "t_s") : At(sample, "time_s");
-  std::string text = fmt::format("{:>10} s", Fixed(time, 3));
-  if (topic == "status") {
-    text += fmt::format("  {:<10} {:>7} x  job {}", Plain(At(sample, "state")),
-                        Fixed(At(sample, "real_time_factor"), 2), JobSummary(At(sample, "job")));
-  } else if (topic == "quality") {
-    text += fmt::format("  stability {}  {} {} N  {}", Fixed(At(sample, "stability"), 3), out.Rho(),
-                        Fixed(At(sample, "load_margin_n"), 3), out.Phi());
-    for (const auto& [name, f] : Named(At(sample, "fingers"), "finger"))
-      text += fmt::format(" {:.2}={}", name, Fixed(At(f, "manipulability"), 2));
-  } else if (topic == "contacts") {
-    for (const auto& [name, f] : Named(At(sample, "fingers"), "finger")) {
-      text += fmt::format("  {} {}", name,
-                          At(f, "in_contact") == true ? Fixed(At(f, "force_n"), 2) + " N"
-                                                      : std::string(out.Dash()));
-    }
-  } else if (topic == "joints") {
-    for (const auto& j : At(sample, "joints")) text += " " + Fixed(At(j, "angle_rad"), 0, kDegrees);
-    text += " deg";
-  } else {
-    const Json& object = At(sample, "object");
-    text += fmt::format("  object {} mm  |{} contacts", Vector(At(object, "p_WO_m"), 2, 1e3),
-                        At(sample, "contacts").size());
-  }
-  return text;
-}
-
-ExitCode Stream(Context& context, const std::string& topic, const Json& params,
-                std::int64_t count) {
-  const Interruptible interruptible;
-  context.client().Call("subscribe", params);
-  // With --timeout a stream that falls silent is an error; without, it may be silent for ever.
-  const double patience = context.options().timeout_s.value_or(0);
-  try {
-    for (std::int64_t n = 0; count <= 0 || n < count; ++n) {
-      const auto sample = context.client().NextEvent(patience);
-      if (!sample)
-        throw CliError(kTimeout, fmt::format("nothing on '{}' for {:g} s", topic, patience),
-                       "regrasp status");
-      context.Print(*sample,
-                    [&] { context.out().Line(SampleLine(context.out(), topic, *sample)); });
-      context.out().Flush();
-    }
-  } catch (const CliError& error) {
-    if (error.code != kInterrupted) throw;
-    return kInterrupted;
-  }
-  return kOk;
-}
-
-std::int64_t Count(const Invocation& invocation) {
-  if (!invocation.Has("count")) return 0;
-  const double count = ParseNumber(invocation.Text("count"), "--count");
-  if (count < 1 || count > 1e12 || count != static_cast<double>(static_cast<std::int64_t>(count))) {
-    throw CliError(kUsage, fmt::format("--count {}: allowed are whole numbers from 1",
-                                       invocation.Text("count")));
-  }
-  return static_cast<std::int64_t>(count);
-}
-
-ExitCode Watch(Context& context, const Invocation& invocation) {
-  return Stream(context, invocation.params.at("topic"), invocation.params, Count(invocation));
-}
-
-ExitCode Events(Context& context, const Invocation& invocation) {
-  if (invocation.Has("follow")) {
-    return Stream(context, "events", {{"topic", "events"}},
-                  invocation.params.value("count", std::int64_t{0}));
-  }
-  const Json answer = context.Call(invocation);
-  const Json& events = At(answer, "events");
-  context.PrintRows(answer, {events.begin(), events.end()}, [&] {
-    for (const auto& event : events) context.out().Line(EventLine(context.out(), event));
-  });
-  return kOk;
-}
-
 }  // namespace
 
 std::vector<CommandSpec> InspectCommands() {
-  const Arg follow = {.key = "follow",
-                      .flags = "-f,--follow",
-                      .metavar = "",
-                      .kind = ArgKind::kFlag,
-                      .help = "print new events as they come, until interrupted"};
-  const Arg count = {.key = "count",
-                     .flags = "--count",
-                     .metavar = "N",
-                     .kind = ArgKind::kText,
-                     .help = "end after so many samples",
-                     .default_text = "until interrupted"};
-  CommandSpec wait =
-      MethodCommand("job.wait", kGroup, JobWait, {.positional = {"id"}, .hidden = {"timeout_s"}});
-  wait.sentence = "wait until a job has ended, print its record";
-  CommandSpec watch =
-      MethodCommand("subscribe", kGroup, Watch, {.positional = {"topic"}, .extra = {count}});
-  watch.sentence = "print a topic again and again";
-  return {
+  std::vector<CommandSpec> commands = {
       MethodCommand("status", kGroup, Status),
       MethodCommand("contacts", kGroup, Contacts),
       MethodCommand("joints", kGroup, Joints),
       MethodCommand("quality", kGroup, Quality),
-      MethodCommand("shape", kGroup, Shape,
-                    {.hidden = {"mesh"},
-                     .extra = {{.key = "output",
-                                .flags = "-o,--output",
-                                .metavar = "FILE",
-                                .help = "write the surface as a closed mesh, in metres; the suffix "
-                                        "decides: .ply (with what is unknown, and the error), .stl",
-                                .default_text = "print what is known of it"}}}),
+      ShapeCommand(),
       MethodCommand("truth", kGroup, Truth),
-      MethodCommand("job.list", kGroup, JobList),
-      MethodCommand("job.get", kGroup, JobShow, {.positional = {"id"}}),
-      wait,
-      MethodCommand("job.cancel", kGroup, JobShow, {.positional = {"id"}}),
-      MethodCommand("events", kGroup, Events, {.extra = {follow}}),
-      watch,
-      {"top",
-       kGroup,
-       "the run on a full screen: fingers, curves, events; keys to act",
-       nullptr,
-       {},
-       Top},
   };
+  std::ranges::move(JobCommands(), std::back_inserter(commands));
+  std::ranges::move(WatchCommands(), std::back_inserter(commands));
+  commands.push_back({"top",
+                      kGroup,
+                      "the run on a full screen: fingers, curves, events; keys to act",
+                      nullptr,
+                      {},
+                      Top});
+  return commands;
 }
 
 }  // namespace regrasp::cli

@@ -223,4 +223,70 @@ ExitCode StartJob(Context& context, const Invocation& invocation) {
   return JobExit(record);
 }
 
+std::string JobSummary(const Json& job) {
+  if (job.is_object()) {
+    std::string text = fmt::format("{} {}", Plain(At(job, "id")), Plain(At(job, "method")));
+    if (At(job, "finger").is_string()) text += " " + Plain(At(job, "finger"));
+    text += ", " + Plain(At(job, "state"));
+    if (At(job, "state") == "running")
+      text += fmt::format(" {} %", Fixed(At(job, "progress"), 0, 100));
+    return text;
+  }
+  return job.is_null() ? "none" : Plain(job);
+}
+
+namespace {
+
+constexpr const char* kGroup = "Inspect";
+
+ExitCode JobList(Context& context, const Invocation& invocation) {
+  const Json answer = context.Call(invocation);
+  const Json& jobs = At(answer, "jobs");
+  context.PrintRows(answer, {jobs.begin(), jobs.end()}, [&] {
+    Output& out = context.out();
+    if (jobs.empty()) return out.Line("no jobs yet");
+    Table table({">ID", "METHOD", "STATE", ">PROGRESS", ">START TICK", ">END TICK", "RESULT"});
+    for (const auto& job : jobs) {
+      std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
+      if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
+      if (At(job, "end").is_string()) result = Plain(At(job, "end"));
+      if (At(job, "angle_rad").is_number())
+        result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
+      const auto tick = [&](const char* key) {
+        return At(job, key).is_number() ? Plain(At(job, key)) : std::string(out.Dash());
+      };
+      const bool finger = At(job, "finger").is_string();
+      table.Row({Plain(At(job, "id")),
+                 Plain(At(job, "method")) + (finger ? " " + Plain(At(job, "finger")) : ""),
+                 Plain(At(job, "state")), Fixed(At(job, "progress"), 0, 100) + " %",
+                 tick("start_tick"), tick("end_tick"), result});
+    }
+    out.Add(table.Text(out));
+  });
+  return kOk;
+}
+
+ExitCode JobShow(Context& context, const Invocation& invocation) {
+  const Json record = context.Call(invocation);
+  context.Print(record, [&] { PrintJob(context.out(), record); });
+  return kOk;
+}
+
+ExitCode JobWait(Context& context, const Invocation& invocation) {
+  const Json record = WaitForJob(context, invocation.params.at("id"));
+  context.Print(record, [&] { PrintJob(context.out(), record); });
+  return JobExit(record);
+}
+
+}  // namespace
+
+std::vector<CommandSpec> JobCommands() {
+  CommandSpec wait =
+      MethodCommand("job.wait", kGroup, JobWait, {.positional = {"id"}, .hidden = {"timeout_s"}});
+  wait.sentence = "wait until a job has ended, print its record";
+  return {MethodCommand("job.list", kGroup, JobList),
+          MethodCommand("job.get", kGroup, JobShow, {.positional = {"id"}}), wait,
+          MethodCommand("job.cancel", kGroup, JobShow, {.positional = {"id"}})};
+}
+
 }  // namespace regrasp::cli

@@ -2,6 +2,9 @@
 
 /// Jobs: waiting for them with progress, and printing their records.
 
+#include <string>
+#include <vector>
+
 #include "cli/client/context.h"
 
 namespace regrasp::cli {
@@ -18,10 +21,16 @@ Json WaitForJob(Context& context, std::int64_t id, Standstill standstill = Stand
 /// exploration not converged, object dropped.
 ExitCode JobExit(const Json& record);
 
+/// A job of `status` in a few words: number, method, finger, state, how far.
+std::string JobSummary(const Json& job);
+
 /// The record, for people: one sentence, then what it measured.
 void PrintJob(Output& out, const Json& record);
 
 /// Sends the method of `invocation`, prints the job it started or, with --wait, its record.
 ExitCode StartJob(Context& context, const Invocation& invocation);
+
+/// `job list`, `show`, `wait`, `cancel`.
+std::vector<CommandSpec> JobCommands();
 
 }  // namespace regrasp::cli

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/common/box_corners.h"
 #include "core/hand/kinematics.h"
 #include "core/hand/solid.h"
 #include "core/world/start_overlap.h"
@@ -23,10 +24,8 @@ std::vector<Vector3d> CornersOf(const ObjectModel& object) {
   Vector3d half = object.half_extents;
   if (object.kind != ObjectModel::Kind::kBox) half.setConstant(object.radius);
   if (object.kind == ObjectModel::Kind::kCapsule) half.z() += object.half_length;
-  std::vector<Vector3d> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(half.cwiseProduct(Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
-  return corners;
+  const auto corners = BoxCorners(half);
+  return {corners.begin(), corners.end()};
 }
 
 /// Whether two turns bring the same points to about the same places.

@@ -72,6 +72,7 @@ constexpr Example kExamples[] = {
     {"plot", "regrasp plot quality -o quality.png", "the last ten minutes as curves"},
     {"plot", "regrasp plot quality --show", "here in the terminal"},
     {"plot", "regrasp plot scene -o scene.png", "the hand as it is now"},
+    {"plot", "regrasp plot shape -o shape.pdf --size 180", "the surface as felt, from two sides"},
 
     {"experiment exploration", "regrasp experiment exploration --finger ring --seeds 10 -o ring", "ten runs, a table, a picture"},
     {"experiment rotation", "regrasp experiment rotation --turns 1 --seeds 10 -o turns", "ten turns"},

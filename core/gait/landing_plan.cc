@@ -14,7 +14,6 @@
 namespace regrasp {
 namespace {
 
-constexpr int kRatedPerTick = 1;
 constexpr int kReachSteps = 8;
 constexpr double kNearObject = 1.8;  // of the mean radius: a link farther out is clear of it
 
@@ -221,7 +220,7 @@ bool LandingPlan::Examine(const ControlTick& tick) {
 
 bool LandingPlan::Step(const ControlTick& tick) {
   if (next_ < kCandidates) {
-    for (int k = 0; k < kRatedPerTick && next_ < kCandidates; ++k) Remember(Rate(tick, next_++));
+    Remember(Rate(tick, next_++));  // a tick has room for one
     if (next_ == kCandidates) crowded_ = shortlist_[0].landing.blocked;
     if (next_ == kCandidates && tick.finger(request_.finger).ticks_without_contact == 0) {
       // Staying is examined in any case.

@@ -25,6 +25,137 @@ struct Chunk {
   std::string_view records;
 };
 
+/// The schemas and channels of a file by their numbers.
+class Definitions {
+ public:
+  struct Schema {
+    std::string name, text;
+  };
+  struct Channel {
+    std::string topic;
+    Schema schema;
+  };
+  /// False: damaged, or another than before. Those of the summary section come first, and are
+  /// believed.
+  bool Add(std::uint8_t opcode, Cursor content, bool of_summary) {
+    const auto number = content.Number<std::uint16_t>();
+    if (opcode == kSchema) {
+      const std::string_view name = content.Text();
+      content.Text();  // encoding
+      const std::string_view schema = content.Text();
+      if (!content.whole()) return false;
+      const auto known =
+          schemas_.try_emplace(number, Schema{std::string(name), std::string(schema)});
+      return of_summary || known.first->second.text == schema;
+    }
+    const auto schema = content.Number<std::uint16_t>();
+    const std::string_view topic = content.Text();
+    content.Text();  // encoding
+    content.Text();  // metadata
+    if (!content.whole()) return false;
+    const auto known =
+        channels_.try_emplace(number, Channel{std::string(topic), schemas_[schema]}).first;
+    return of_summary || known->second.topic == topic;
+  }
+
+  /// Null where there is none of this number.
+  const Channel* FindChannel(std::uint16_t number) const {
+    const auto found = channels_.find(number);
+    return found == channels_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+};
+
+/// What the end of a file says is in it.
+struct Index {
+  std::vector<McapChunk> chunks;  ///< in the order of the file
+  std::uint64_t messages = 0;
+};
+
+McapChunk ChunkOf(Cursor content, const Definitions& definitions) {
+  McapChunk chunk;
+  chunk.start = content.Number<std::uint64_t>();
+  chunk.end = content.Number<std::uint64_t>();
+  chunk.offset = content.Number<std::uint64_t>();
+  content.Number<std::uint64_t>();  // length
+  Cursor channels{content.Text()};
+  while (channels.ok && !channels.data.empty()) {
+    const auto* known = definitions.FindChannel(channels.Number<std::uint16_t>());
+    channels.Number<std::uint64_t>();  // where its index is
+    if (known != nullptr) chunk.topics.insert(known->topic);
+  }
+  return chunk;
+}
+
+/// What the end of a whole file repeats; it goes into `definitions`, too. Empty where there is
+/// none.
+Index ReadIndex(const File& file, Definitions* definitions) {
+  Index index;
+  const std::uint64_t tail = kFooterRecord + kMagic.size();
+  if (file.size() < tail + kMagic.size()) return index;
+  const std::string end = file.At(file.size() - tail, tail);
+  if (!end.ends_with(std::string_view(kMagic.data(), kMagic.size()))) return index;
+  Cursor footer{end};
+  if (footer.Number<std::uint8_t>() != kFooter || footer.Number<std::uint64_t>() != 20)
+    return index;
+  const auto begin = footer.Number<std::uint64_t>();
+  const std::uint64_t limit = file.size() - tail;
+  if (begin == 0 || begin > limit || limit - begin > kMaxRecord) return index;
+  const std::string section = file.At(begin, limit - begin);
+  Cursor cursor{section};
+  while (!cursor.data.empty()) {
+    const auto opcode = cursor.Number<std::uint8_t>();
+    const std::string_view content = cursor.Take(cursor.Number<std::uint64_t>());
+    if (!cursor.ok) return index;
+    if (opcode == kSchema || opcode == kChannel) definitions->Add(opcode, {content}, true);
+    if (opcode == kStatistics) index.messages = Cursor{content}.Number<std::uint64_t>();
+    if (opcode == kChunkIndex) index.chunks.push_back(ChunkOf({content}, *definitions));
+  }
+  // An index that leads around in the file is none.
+  if (!std::ranges::is_sorted(index.chunks, std::less_equal<>(), &McapChunk::offset))
+    index.chunks.clear();
+  return index;
+}
+
+/// Nothing when the record is no chunk of ours.
+std::optional<Chunk> ParseChunk(std::string_view data, std::string_view* compression) {
+  Cursor content{data};
+  Chunk chunk;
+  chunk.start = content.Number<std::uint64_t>();
+  chunk.end = content.Number<std::uint64_t>();
+  const auto size = content.Number<std::uint64_t>();
+  chunk.crc = content.Number<std::uint32_t>();
+  *compression = content.Text();
+  chunk.records = content.Take(content.Number<std::uint64_t>());
+  if (!content.whole() || (compression->empty() && chunk.records.size() != size)) return {};
+  return chunk;
+}
+
+/// The next whole chunk with a right checksum from `offset` on.
+std::optional<std::uint64_t> FindChunk(const File& file, std::uint64_t offset) {
+  for (std::uint64_t base = offset; base < file.size(); base += kWindow) {
+    const std::string window = file.At(base, kWindow + kRecordHead + kChunkHead);
+    for (std::size_t i = 0; i < std::min<std::size_t>(kWindow, window.size()); ++i) {
+      if (window[i] != kChunk) continue;
+      Cursor head{std::string_view(window).substr(i + 1)};
+      const auto length = head.Number<std::uint64_t>();
+      head.Take(16);
+      const auto size = head.Number<std::uint64_t>();
+      const auto crc = head.Number<std::uint32_t>();
+      const auto compression = head.Number<std::uint32_t>();
+      if (!head.ok || compression != 0 || crc == 0 || size > kMaxRecord ||
+          length != size + kChunkHead)
+        continue;
+      const std::string records = file.At(base + i + kRecordHead + kChunkHead, size);
+      if (records.size() == size && Crc(records) == crc) return base + i;
+    }
+  }
+  return {};
+}
+
 class Reader {
  public:
   Reader(const std::string& path, const std::function<void(const McapMessage&)>& message)
@@ -37,17 +168,17 @@ class Reader {
       if (!next) break;
       offset = *next;
     }
-    if (expected_ > summary_.messages && summary_.lost.empty())
+    if (index_.messages > summary_.messages && summary_.lost.empty())
       Lose({0, 0, 0, 0,
-            "the file counts " + std::to_string(expected_) + " messages, " +
+            "the file counts " + std::to_string(index_.messages) + " messages, " +
                 std::to_string(summary_.messages) + " were found"});
     return std::move(summary_);
   }
 
   McapSummary Read(const std::function<bool(const McapChunk&)>& wanted) {
     Open();
-    if (chunks_.empty()) return Read();
-    for (const McapChunk& chunk : chunks_)
+    if (index_.chunks.empty()) return Read();
+    for (const McapChunk& chunk : index_.chunks)
       if (wanted(chunk)) OneRecord(chunk.offset);
     summary_.complete = true;
     return std::move(summary_);
@@ -57,7 +188,7 @@ class Reader {
   void Open() {
     if (file_.At(0, kMagic.size()) != std::string_view(kMagic.data(), kMagic.size()))
       throw McapError(path_ + " is not an MCAP file");
-    ReadSummarySection();
+    index_ = ReadIndex(file_, &definitions_);
   }
 
   /// Reads what stands at `offset`; returns where the next record is, or nothing at the end.
@@ -80,7 +211,7 @@ class Reader {
         return offset + kRecordHead + length;
       }
     }
-    const auto next = FindChunk(offset + 1);
+    const auto next = FindChunk(file_, offset + 1);
     if (!next && !fits) return {};
     const std::uint64_t until = next.value_or(file_.size());
     Lose({offset, until - offset, 0, 0, "a damaged record"});
@@ -97,7 +228,7 @@ class Reader {
         return content.whole();
       case kSchema:
       case kChannel:
-        return Definition(opcode, content, false);
+        return definitions_.Add(opcode, content, false);
       case kMessage:
         if (Message(content)) return true;
         *loss = {0, 1, 0, 0, "a message of no channel"};
@@ -116,57 +247,21 @@ class Reader {
     }
   }
 
-  /// Those of the summary section come first, and are believed.
-  bool Definition(std::uint8_t opcode, Cursor content, bool of_summary) {
-    const auto number = content.Number<std::uint16_t>();
-    if (opcode == kSchema) {
-      const std::string_view name = content.Text();
-      content.Text();  // encoding
-      const std::string_view schema = content.Text();
-      if (!content.whole()) return false;
-      const auto known =
-          schemas_.try_emplace(number, Schema{std::string(name), std::string(schema)});
-      return of_summary || known.first->second.text == schema;
-    }
-    const auto schema = content.Number<std::uint16_t>();
-    const std::string_view topic = content.Text();
-    content.Text();  // encoding
-    content.Text();  // metadata
-    if (!content.whole()) return false;
-    const auto known =
-        channels_.try_emplace(number, Channel{std::string(topic), schemas_[schema]}).first;
-    return of_summary || known->second.topic == topic;
-  }
-
   bool Message(Cursor content) {
     const auto channel = content.Number<std::uint16_t>();
     content.Number<std::uint32_t>();  // sequence
     McapMessage message;
     message.time = content.Number<std::uint64_t>();
     content.Number<std::uint64_t>();  // of publication
-    const auto found = channels_.find(channel);
-    if (!content.ok || found == channels_.end()) return false;
-    message.topic = found->second.topic;
-    message.schema_name = found->second.schema.name;
-    message.schema = found->second.schema.text;
+    const auto* found = definitions_.FindChannel(channel);
+    if (!content.ok || found == nullptr) return false;
+    message.topic = found->topic;
+    message.schema_name = found->schema.name;
+    message.schema = found->schema.text;
     message.data = content.data;
     ++summary_.messages;
     message_(message);
     return true;
-  }
-
-  /// Nothing when the record is no chunk of ours.
-  static std::optional<Chunk> ParseChunk(std::string_view data, std::string_view* compression) {
-    Cursor content{data};
-    Chunk chunk;
-    chunk.start = content.Number<std::uint64_t>();
-    chunk.end = content.Number<std::uint64_t>();
-    const auto size = content.Number<std::uint64_t>();
-    chunk.crc = content.Number<std::uint32_t>();
-    *compression = content.Text();
-    chunk.records = content.Take(content.Number<std::uint64_t>());
-    if (!content.whole() || (compression->empty() && chunk.records.size() != size)) return {};
-    return chunk;
   }
 
   bool ReadChunk(std::string_view data, McapLoss* loss) {
@@ -185,73 +280,11 @@ class Reader {
       if (!records.ok) return false;
       const bool good = opcode == kMessage ? Message({content})
                         : opcode == kSchema || opcode == kChannel
-                            ? Definition(opcode, {content}, false)
+                            ? definitions_.Add(opcode, {content}, false)
                             : opcode >= 0x80;  // chunks hold no chunks
       if (!good) return false;
     }
     return true;
-  }
-
-  /// The next whole chunk with a right checksum from `offset` on.
-  std::optional<std::uint64_t> FindChunk(std::uint64_t offset) {
-    for (std::uint64_t base = offset; base < file_.size(); base += kWindow) {
-      const std::string window = file_.At(base, kWindow + kRecordHead + kChunkHead);
-      for (std::size_t i = 0; i < std::min<std::size_t>(kWindow, window.size()); ++i) {
-        if (window[i] != kChunk) continue;
-        Cursor head{std::string_view(window).substr(i + 1)};
-        const auto length = head.Number<std::uint64_t>();
-        head.Take(16);
-        const auto size = head.Number<std::uint64_t>();
-        const auto crc = head.Number<std::uint32_t>();
-        const auto compression = head.Number<std::uint32_t>();
-        if (!head.ok || compression != 0 || crc == 0 || size > kMaxRecord ||
-            length != size + kChunkHead)
-          continue;
-        const std::string records = file_.At(base + i + kRecordHead + kChunkHead, size);
-        if (records.size() == size && Crc(records) == crc) return base + i;
-      }
-    }
-    return {};
-  }
-
-  /// Definitions, and how many messages there should be, as the end of a whole file repeats them.
-  void ReadSummarySection() {
-    const std::uint64_t tail = kFooterRecord + kMagic.size();
-    if (file_.size() < tail + kMagic.size()) return;
-    const std::string end = file_.At(file_.size() - tail, tail);
-    if (!end.ends_with(std::string_view(kMagic.data(), kMagic.size()))) return;
-    Cursor footer{end};
-    if (footer.Number<std::uint8_t>() != kFooter || footer.Number<std::uint64_t>() != 20) return;
-    const auto begin = footer.Number<std::uint64_t>();
-    const std::uint64_t limit = file_.size() - tail;
-    if (begin == 0 || begin > limit || limit - begin > kMaxRecord) return;
-    const std::string section = file_.At(begin, limit - begin);
-    Cursor cursor{section};
-    while (!cursor.data.empty()) {
-      const auto opcode = cursor.Number<std::uint8_t>();
-      const std::string_view content = cursor.Take(cursor.Number<std::uint64_t>());
-      if (!cursor.ok) return;
-      if (opcode == kSchema || opcode == kChannel) Definition(opcode, {content}, true);
-      if (opcode == kStatistics) expected_ = Cursor{content}.Number<std::uint64_t>();
-      if (opcode == kChunkIndex) AddChunk({content});
-    }
-    // An index that leads around in the file is none.
-    if (!std::ranges::is_sorted(chunks_, std::less_equal<>(), &McapChunk::offset)) chunks_.clear();
-  }
-
-  void AddChunk(Cursor content) {
-    McapChunk chunk;
-    chunk.start = content.Number<std::uint64_t>();
-    chunk.end = content.Number<std::uint64_t>();
-    chunk.offset = content.Number<std::uint64_t>();
-    content.Number<std::uint64_t>();  // length
-    Cursor channels{content.Text()};
-    while (channels.ok && !channels.data.empty()) {
-      const auto known = channels_.find(channels.Number<std::uint16_t>());
-      channels.Number<std::uint64_t>();  // where its index is
-      if (known != channels_.end()) chunk.topics.insert(known->second.topic);
-    }
-    chunks_.push_back(std::move(chunk));
   }
 
   void Lose(McapLoss loss) {
@@ -261,18 +294,9 @@ class Reader {
   const std::string path_;
   const File file_;
   const std::function<void(const McapMessage&)>& message_;
-  struct Schema {
-    std::string name, text;
-  };
-  struct Channel {
-    std::string topic;
-    Schema schema;
-  };
-  std::vector<McapChunk> chunks_;  ///< of the index, in the order of the file
-  std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, Channel> channels_;
+  Definitions definitions_;
+  Index index_;
   McapSummary summary_;
-  std::uint64_t expected_ = 0;  ///< messages
 };
 
 }  // namespace

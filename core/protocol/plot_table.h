@@ -11,27 +11,29 @@ namespace regrasp {
 
 /// What a picture is drawn of.
 enum class PlotOf {
-  kHistory,       ///< frames and events
-  kFeltSurface,   ///< these, and the object's surface as felt
-  kNewestFrame,   ///< one frame
-  kExplorations,  ///< the last explorations
-  kIncident,      ///< what led to the last drop; a run file has none
+  kHistory,         ///< frames and events
+  kHistoryAndFelt,  ///< these, and the object's surface as felt, where there is one
+  kFeltSurface,     ///< that surface and one frame; refused where nothing was felt
+  kNewestFrame,     ///< one frame
+  kExplorations,    ///< the last explorations
+  kIncident,        ///< what led to the last drop; a run file has none
 };
 
-/// ROW(name on the wire, function that draws: declared in snapshots/plots.h, a PlotOf).
-#define REGRASP_PLOTS(ROW)                       \
-  ROW(comparison, DrawComparison, kExplorations) \
-  ROW(contacts, DrawContacts, kFeltSurface)      \
-  ROW(gait, DrawGait, kHistory)                  \
-  ROW(incident, DrawIncident, kIncident)         \
-  ROW(quality, DrawQuality, kHistory)            \
-  ROW(scene, DrawScene, kNewestFrame)
+/// ROW(name on the wire, name in code, a PlotOf).
+#define REGRASP_PLOTS(ROW)                   \
+  ROW(comparison, Comparison, kExplorations) \
+  ROW(contacts, Contacts, kHistoryAndFelt)   \
+  ROW(gait, Gait, kHistory)                  \
+  ROW(incident, Incident, kIncident)         \
+  ROW(quality, Quality, kHistory)            \
+  ROW(scene, Scene, kNewestFrame)            \
+  ROW(shape, Shape, kFeltSurface)
 
 struct PlotRow {
   std::string_view name;
   PlotOf of;
 };
-#define REGRASP_ROW(name, Draw, of) PlotRow{#name, PlotOf::of},
+#define REGRASP_ROW(name, Name, of) PlotRow{#name, PlotOf::of},
 inline constexpr auto kPlotTable = std::to_array<PlotRow>({REGRASP_PLOTS(REGRASP_ROW)});
 #undef REGRASP_ROW
 

@@ -19,11 +19,11 @@ void QualityMonitor::Update(const ControlTick& now) {
       stability_.values[i] = kMeasureTable[i].compute(input);
   stability_.threshold = parameters.stability_threshold;
 
-  if (++tick_ >= kMarginInterval) {
+  if (++tick_ >= Ticks(kMarginInterval, now.dt)) {
     tick_ = 0;
     UpdateMargin(now);
   } else {
-    UpdateEpsilon(grasp, scale);
+    UpdateEpsilon(grasp, scale, now.dt);
   }
   SmoothMargins(now.dt / (parameters.margin_filter_s + now.dt));
 
@@ -68,10 +68,10 @@ void QualityMonitor::RepeatEpsilon() {
   for (int k = 0; k < epsilon_steps_; ++k) epsilon_.Step(kEpsilonFacets);
 }
 
-void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale) {
+void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale, double dt) {
   ++epsilon_ticks_;
   if (!epsilon_begun_) {
-    if (epsilon_ticks_ < kEpsilonInterval) return;
+    if (epsilon_ticks_ < Ticks(kEpsilonInterval, dt)) return;
     epsilon_grasp_ = grasp;
     epsilon_scale_ = torque_scale;
     epsilon_steps_ = 0;

@@ -1,9 +1,9 @@
 #pragma once
 
 /// Keeps every quality measure of the present grasp fresh without ever standing in the way of a
-/// tick: what is fit for a tick each tick, one load margin every kMarginInterval ticks in turn,
-/// epsilon a few facets at a time in the ticks between. What is done in which tick depends on
-/// nothing but the number of ticks and the grasp.
+/// tick: what is fit for a tick each tick, one load margin every kMarginInterval in turn, epsilon a
+/// few facets at a time in the ticks between. What is done in which tick depends on nothing but the
+/// number of ticks and the grasp.
 
 #include <array>
 
@@ -15,11 +15,11 @@ namespace regrasp {
 
 class QualityMonitor {
  public:
-  static constexpr int kMarginInterval = 5;            ///< ticks from one load margin to the next
+  static constexpr double kMarginInterval = 0.005;     ///< from one load margin to the next [s]
+  static constexpr double kEpsilonInterval = 0.050;    ///< from one beginning on, at least [s]
   static constexpr int kEpsilonFacets = 60;            ///< facets per tick (about 0.1 us each)
   static constexpr int kEpsilonEdges = kMonitorEdges;  ///< of the friction pyramid
   static constexpr int kMaxEpsilonSteps = 10000;       ///< more are never needed
-  static constexpr int kEpsilonInterval = 50;  ///< ticks from one beginning to the next, at least
 
   void Update(const ControlTick& now);
   /// Epsilon is of the grasp some 0.1 s ago; NaN until it has been computed once.
@@ -33,7 +33,7 @@ class QualityMonitor {
     v("stability", stability_);
     v("load_margin_without", load_margin_without_, kUnbounded);
     v("margins", margins_);
-    v("tick", tick_, FieldRange{0, kMarginInterval});
+    v("tick", tick_);
     v("turn", turn_, FieldRange{0, kMaxFingers});
     v("epsilon_grasp", epsilon_grasp_);
     v("epsilon_scale", epsilon_scale_, FieldRange{1e-6, 1e3});
@@ -47,7 +47,7 @@ class QualityMonitor {
  private:
   void UpdateMargin(const ControlTick& now);
   void SmoothMargins(double gain);
-  void UpdateEpsilon(const Grasp& grasp, double torque_scale);
+  void UpdateEpsilon(const Grasp& grasp, double torque_scale, double dt);
   void BeginEpsilon();
   /// Brings the solver to where a loaded state had it.
   void RepeatEpsilon();
@@ -55,7 +55,7 @@ class QualityMonitor {
   StabilityFrame stability_;
   std::array<double, kMaxFingers> load_margin_without_{};
   LoadMargins margins_;
-  int tick_ = 0;  // counts up to kMarginInterval
+  int tick_ = 0;  // since the last load margin
   int turn_ = 0;  // whose load margin comes next; the number of fingers: the whole grasp's
   // The solver's state is what it began with and how far it has come.
   EpsilonSolver epsilon_;

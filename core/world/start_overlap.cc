@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
+#include "core/common/box_corners.h"
 #include "core/hand/mesh.h"
 #include "core/world/surface_mesh.h"
 
@@ -64,9 +66,7 @@ Core CoreOf(const ObjectModel& object) {
     }
     case ObjectModel::Kind::kBox: {
       Core core{{Vector3d::Zero()}, 0};
-      for (int i = 0; i < 8; ++i)
-        core.points_O.push_back(object.half_extents.cwiseProduct(
-            Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1)));
+      std::ranges::copy(BoxCorners(object.half_extents), std::back_inserter(core.points_O));
       return core;
     }
     case ObjectModel::Kind::kMesh:

@@ -123,7 +123,8 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   job->options.changed = ChangedText(service.accepted().parameters, service.journal().config.model);
   job->options.object_name = service.accepted().object->name;
   job->frames = service.history().Frames(job->options.last_s);
-  if (of == PlotOf::kNewestFrame) {
+  if (of == PlotOf::kFeltSurface) service.CheckNotFaulted();
+  if (of == PlotOf::kNewestFrame || of == PlotOf::kFeltSurface) {
     job->frames = {std::make_shared<const Frame>(service.newest().frame)};
     job->options.last_s = 0;
   }
@@ -173,10 +174,16 @@ Outcome Plot(Service& service, const Params& params, Client&) {
   Outcome outcome;
   outcome.begin = draw;
   // What was felt is the control thread's; a session that has faulted is not asked any more.
-  if (of == PlotOf::kFeltSurface && service.newest().frame.state != SessionState::kFaulted)
-    outcome.begin = [&service, job, draw](Done done) {
-      service.Mark(ControlRequest::Part::kFelt, [job, draw, done](const JournalNews& mark) {
+  const bool faulted = service.newest().frame.state == SessionState::kFaulted;
+  if (of == PlotOf::kFeltSurface || (of == PlotOf::kHistoryAndFelt && !faulted))
+    outcome.begin = [&service, job, draw, of](Done done) {
+      service.Mark(ControlRequest::Part::kFelt, [job, draw, of, done](const JournalNews& mark) {
         job->felt = mark.felt;
+        if (of == PlotOf::kFeltSurface && mark.felt->touched_cells() == 0) {
+          const RpcError error{
+              ErrorCode::kBadState, "no finger has felt the object yet", "regrasp grasp", {}, {}};
+          return done({}, &error);
+        }
         draw(done);
       });
     };

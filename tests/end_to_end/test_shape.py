@@ -25,6 +25,11 @@ class Shape(DaemonCase):
     def test_an_egg(self):
         before = self.json("shape")
         self.assertEqual((before["touched_cells"], before["truth"], before["mean_radius_m"]), (0, None, None))
+        cause, hint = self.refused(5, "plot", "shape", "-o", self.dir / "early.svg")
+        self.assertIn("no finger has felt the object", cause)
+        self.assertIn("regrasp grasp", hint)
+        self.assertFalse((self.dir / "early.svg").exists())
+        self.expect(0, "record", "start", "egg.mcap")
         self.expect(0, "grasp", "--wait")
         self.expect(0, "rotate", "--angle", 90, "--wait")
         shape = self.json("shape")
@@ -52,8 +57,17 @@ class Shape(DaemonCase):
 
         self.expect(0, "plot", "contacts", "-o", self.dir / "contacts.svg")
         self.assertIn("surface as felt", (self.dir / "contacts.svg").read_text())
+        # The same picture from the daemon and from the run's file.
+        self.expect(0, "plot", "shape", "-o", self.dir / "shape.svg")
+        self.expect(0, "record", "stop")
+        self.expect(0, "plot", "shape", self.dir / "out" / "egg.mcap", "-o", self.dir / "again.svg")
+        picture = (self.dir / "shape.svg").read_text()
+        self.assertIn(f"touched, {100 * shape['touched_fraction']:.0f} % of it", picture)
+        self.assertIn(f"rms error  {1e3 * shape['truth']['rms_error_m']:.2f} mm", picture)
+        self.assertEqual(picture, (self.dir / "again.svg").read_text())
         self.expect(0, "reset")
         self.assertEqual(self.json("shape")["touched_cells"], 0)
+        self.refused(5, "plot", "shape")
 
     def test_another_suffix_is_refused(self):
         said = self.refused(2, "shape", "-o", self.dir / "felt.obj")

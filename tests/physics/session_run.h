@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -106,5 +107,16 @@ class SessionRun {
     for (const JobRecord& job : session.TakeFinishedJobs()) jobs.push_back(job);
   }
 };
+
+/// How far `seconds` of holding move the object from where it is now, at most [m].
+inline double Wander(SessionRun* run, double seconds) {
+  const Vector3d p0 = run->session.truth().p_WO;
+  double worst = 0;
+  for (int k = 0; k < seconds * 1000; ++k) {
+    run->Tick();
+    worst = std::max(worst, (run->session.truth().p_WO - p0).norm());
+  }
+  return worst;
+}
 
 }  // namespace regrasp

@@ -207,7 +207,7 @@ class Methods:
 
     def plot(self, name: str, file: str | None = None, overwrite: bool | None = None, last_s: float | None = None, size_m: float | None = None, title: bool | None = None, font_size_pt: float | None = None, dpi: float | None = None) -> dict:
         """Draw a picture into the output directory.
-        name: the picture; one of comparison, contacts, gait, incident, quality, scene.
+        name: the picture; one of comparison, contacts, gait, incident, quality, scene, shape.
         file: file name (not a path), written in the daemon's output directory; its suffix decides: .png, .jpg,
             .pdf, .svg; left out: NAME.png, or NAME-2.png ... where that is there.
         overwrite: replace a picture of this name; otherwise that is an error; left out: false.

@@ -58,6 +58,16 @@ IncidentNote NoteOf(std::span<const Frame> history) {
   return note;
 }
 
+/// A ball of 25 mm felt on the side of +x, by `off` too large [m].
+FeltSurface FeltBall(double off) {
+  FeltSurface felt;
+  for (const Vector3d& way : {Vector3d(1, 0, 0), Vector3d(1, 0.3, 0.2), Vector3d(1, -0.3, 0.4)}) {
+    const Vector3d u = way.normalized();
+    felt.Add((0.025 + off) * u, u, 50);
+  }
+  return felt;
+}
+
 /// A history, or its newest frame, as every picture takes it.
 PlotInput InputOf(std::span<const Frame> history, const PlotOptions& options = {}) {
   PlotInput input;
@@ -66,6 +76,7 @@ PlotInput InputOf(std::span<const Frame> history, const PlotOptions& options = {
                   {2500, EventKind::kPush, -1, 0, 0, "push"}};
   input.explorations = {input.frames, input.frames};
   input.incident = NoteOf(history);
+  input.felt = std::make_shared<FeltSurface>(FeltBall(0.0004));
   input.hand = SyntheticHand();
   input.options = options;
   return input;
@@ -166,6 +177,7 @@ TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
   options.width_mm = kWidth_mm;
   PlotScene(run_.back(), hand_, object_, options, File("scene.svg"));
   PlotContacts(run_, hand_, object_, options, File("contacts.svg"));
+  DrawPlot("shape", InputOf(run_, options), File("shape.svg"));
   ExperimentPicture sweep;
   sweep.title = "Sweep";
   sweep.facts = "a · b";
@@ -176,7 +188,7 @@ TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
   PlotSweep(sweep, File("sweep.svg"));
   const Canvas measure(SizeOf({}));
   const std::regex any_text("<text ");
-  for (const char* name : {"scene.svg", "contacts.svg", "sweep.svg"}) {
+  for (const char* name : {"scene.svg", "contacts.svg", "shape.svg", "sweep.svg"}) {
     const std::string svg = Bytes(File(name));
     std::smatch sheet;
     ASSERT_TRUE(std::regex_search(
@@ -344,6 +356,41 @@ TEST_F(Snapshots, ContactsShowEveryFingerInItsColour) {
     const Colour near = LookOfFinger(f).colour, far = Tint(near, 0.62);
     const cv::Rect plots(0, 90, 1350, 900);
     EXPECT_GT(Count(picture, near, plots) + Count(picture, far, plots), 100) << f;
+  }
+}
+
+TEST_F(Snapshots, ShapeShowsWhatWasFeltAndOnWhichSideOfTheTruth) {
+  const auto count = [&](double off, Colour colour, const cv::Rect& view) {
+    PlotInput input = InputOf(run_);
+    input.felt = std::make_shared<FeltSurface>(FeltBall(off));
+    DrawPlot("shape", input, File("s.png"));
+    // Shaded by up to a quarter: by hue and depth rather than by the very colour.
+    const cv::Mat picture = cv::imread(File("s.png"))(view);
+    int pixels = 0;
+    for (auto it = picture.begin<cv::Vec3b>(); it != picture.end<cv::Vec3b>(); ++it)
+      pixels += colour == kBlue ? (*it)[0] > (*it)[2] + 60 : (*it)[2] > (*it)[0] + 60;
+    return pixels;
+  };
+  // The views of a sheet of 1600 x 1000: from -x on the left, from +x on the right.
+  const cv::Rect left(22, 106, 630, 870), right(680, 106, 630, 870);
+  EXPECT_GT(count(0.0004, kVermillion, right), 5000);
+  EXPECT_EQ(count(0.0004, kBlue, right), 0);
+  EXPECT_GT(count(-0.0004, kBlue, right), 5000);
+  EXPECT_EQ(count(-0.0004, kVermillion, right), 0);
+  EXPECT_EQ(count(0, kBlue, right) + count(0, kVermillion, right), 0);
+  EXPECT_LT(count(0.0004, kVermillion, left), count(0.0004, kVermillion, right) / 4);
+}
+
+TEST_F(Snapshots, AShapeThatNobodyFeltIsRefused) {
+  PlotInput input = InputOf(run_);
+  for (const auto& felt : {std::shared_ptr<const FeltSurface>(),
+                           std::shared_ptr<const FeltSurface>(new FeltSurface)}) {
+    input.felt = felt;
+    const std::string error = ErrorOf([&] { DrawPlot("shape", input, File("s.png")); });
+    EXPECT_NE(error.find(File("s.png") + ": nothing to draw: no finger has felt the object"),
+              std::string::npos)
+        << error;
+    EXPECT_FALSE(fs::exists(File("s.png")));
   }
 }
 
