@@ -19,7 +19,6 @@ struct JobOptions {
   /// `regrasp experiment rotation --push`.
   double push_n = 0;
   std::function<void(const Event&)> on_event = {};
-  std::function<void()> on_tick = {};
 };
 
 /// Gives a job command and ticks until its job ends, or fails where it takes longer than the limit
@@ -42,7 +41,6 @@ inline JobRecord RunJob(Session& session, Command command, const JobOptions& opt
       session.Apply(push);
     }
     session.Tick();
-    if (options.on_tick) options.on_tick();
     for (const Event& event : session.TakeEvents())
       if (options.on_event) options.on_event(event);
     for (const JobRecord& job : session.TakeFinishedJobs())

@@ -11,8 +11,6 @@ class GaitReport {
  public:
   /// After each Update of the gait.
   void Report(const FingerGait& gait, const ActivityContext& context);
-  /// The newest regrasp; complete once its event has come.
-  const RegraspRecord& last() const { return last_; }
   template <typename V>
   void Fields(V& v) {
     v("last", last_);
@@ -22,7 +20,7 @@ class GaitReport {
   void Regrasped(const Regrasp& regrasp, const ActivityContext& context);
   double TruePhi(const Regrasp& regrasp, const ActivityContext& context) const;
 
-  RegraspRecord last_;
+  RegraspRecord last_;  // complete once its event has come
 };
 
 }  // namespace regrasp

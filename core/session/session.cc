@@ -179,9 +179,6 @@ void Session::MeasureStages(bool on) {
   impl_->world.MeasureStages(on);
 }
 Session::StageTimes Session::stage_times() const { return impl_->times; }
-const RegraspRecord& Session::last_regrasp() const {
-  return std::get<RotateActivity>(impl_->activities).last_regrasp();
-}
 const WorldState& Session::truth() const { return impl_->world.state(); }
 const FeltSurface& Session::felt_surface() const { return impl_->felt; }
 const World& Session::world() const { return impl_->world; }

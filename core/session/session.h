@@ -90,9 +90,6 @@ class Session {
   void MeasureStages(bool on);
   StageTimes stage_times() const;
 
-  /// The newest regrasp of a rotation; complete once its event has come.
-  const RegraspRecord& last_regrasp() const;
-
   /// The object's surface as felt since the last reset, by what the controller believes.
   const FeltSurface& felt_surface() const;
 

@@ -13,7 +13,6 @@ class RotateActivity : public Activity {
   ActivityStep Stop(const ActivityContext& context) override;
   void Dropped(const ActivityContext& context) override;
   void Record(const ActivityContext& context, Frame* frame) const override;
-  const RegraspRecord& last_regrasp() const { return report_.last(); }
   template <typename V>
   void Fields(V& v) {
     v("gait", gait_);
