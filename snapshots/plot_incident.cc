@@ -151,8 +151,12 @@ void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
   const Box& area = panels.front().area;
   std::array<double, kLabelRows> taken;
   taken.fill(-1e9);
+  const auto at = [&](const Moment& moment) { return panels.front().At(moment.before_s, 0).x; };
+  for (const Moment& moment : moments)
+    if (const double x = at(moment); x >= area.x)
+      canvas->Line({x, y + 6}, {x, panels.back().area.br().y}, {moment.colour, 1.6, {6, 4}});
   for (const Moment& moment : moments) {
-    const double x = panels.front().At(moment.before_s, 0).x;
+    const double x = at(moment);
     if (x < area.x) continue;
     // To the right of its mark, or to the left where there is more room.
     constexpr double kMark = 12;
@@ -170,9 +174,9 @@ void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
                    {.size = 18,
                     .colour = Shade(moment.colour, 0.15),
                     .align_x = left ? AlignX::kRight : AlignX::kLeft,
-                    .bold = true});
+                    .bold = true,
+                    .halo = 2});
     }
-    canvas->Line({x, y + 6}, {x, panels.back().area.br().y}, {moment.colour, 1.6, {6, 4}});
   }
 }
 
@@ -283,8 +287,9 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   if (gait)
     DrawStrip(&canvas, panels[0], strips + 30, 24, "gait", bands(GaitStateOf), [&](int value) {
       if (value == kTurning) return BandLook{"all hold", Tint(kInk, 0.9)};
+      const std::string row(GaitStateNameOf(hand, value).view());
       return BandLook{FingerName(hand, value) + " regrasps", Tint(LookOfFinger(value).colour, 0.42),
-                      std::string(GaitStateNameOf(hand, value).view())};
+                      "S_{" + row.substr(2) + "}"};
     });
   for (int f = 0; f < n; ++f)
     DrawStrip(&canvas, panels[0], fingers_top + f * (strip + 4), strip, FingerName(hand, f),
