@@ -163,6 +163,26 @@ TEST_F(Snapshots, APictureInMemoryIsThatOfTheFile) {
   EXPECT_LT(difference(ScenePixels(run_.back(), hand_, object_, options), "scene.png"), 0.5);
 }
 
+TEST_F(Snapshots, FewTrialsArePointsInsteadOfABox) {
+  ExperimentPicture picture;
+  picture.title = "Few";
+  picture.facts = "a · b";
+  picture.measure_labels = {"gain"};
+  QuantileMark mark;
+  mark.has_values = true;
+  mark.few = {0.1, 0.2, 0.7};
+  picture.groups = {{"first", "", "", {{"φ rose", 0.9, 0.6, 1}}, {mark}}};
+  PlotExperiment(picture, File("few.svg"));
+  picture.groups[0].measures[0].few.clear();
+  PlotExperiment(picture, File("many.svg"));
+  const std::string few = Bytes(File("few.svg")), many = Bytes(File("many.svg"));
+  const auto says = [](const std::string& svg, const char* text) {
+    return svg.find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(says(few, "one trial") && !says(few, "of the trials"));
+  EXPECT_TRUE(says(many, "of the trials") && !says(many, "one trial"));
+}
+
 TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
   constexpr double kWidth_mm = 88;
   PlotOptions options;
