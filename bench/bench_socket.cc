@@ -1,5 +1,7 @@
 // Latency of requests while the simulation runs at full speed: the daemon in this process, one
-// client, round trips over its socket. The round trip bounds the daemon's own time from above.
+// client, round trips over its socket. The round trip bounds the daemon's own time from above. Then
+// that of saving and restoring a checkpoint of a held ball and of a held mesh, in lockstep; saving
+// waits for the disk.
 //   build/release/bin/bench_socket [COUNT]
 
 #include <sys/socket.h>
@@ -27,8 +29,9 @@ class Client {
   ~Client() { ::close(fd_); }
 
   /// Seconds from the request to the end of its answer.
-  double RoundTrip(const std::string& method) {
-    const std::string line = R"({"jsonrpc":"2.0","id":1,"method":")" + method + "\"}\n";
+  double RoundTrip(const std::string& method, const std::string& params = "{}") {
+    const std::string line =
+        R"({"jsonrpc":"2.0","id":1,"method":")" + method + R"(","params":)" + params + "}\n";
     const auto start = std::chrono::steady_clock::now();
     if (::send(fd_, line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size()))
       throw std::runtime_error("the daemon has gone");
@@ -45,6 +48,33 @@ class Client {
   int fd_;
 };
 
+void Print(const std::string& name, std::vector<double> times_s) {
+  std::ranges::sort(times_s);
+  std::printf("%-18s %10.1f %10.1f %10.1f\n", name.c_str(), 1e6 * times_s[times_s.size() / 2],
+              1e6 * times_s[times_s.size() * 99 / 100], 1e6 * times_s.back());
+}
+
+void Checkpoints(regrasp::DaemonConfig config, const std::string& object, int count) {
+  config.clock = "lockstep";
+  config.object = object;
+  regrasp::Daemon daemon(config);
+  std::thread thread([&] { daemon.Run(false); });
+  {
+    Client client(config.socket);
+    client.RoundTrip("grasp");
+    client.RoundTrip("job.wait", R"({"id":1})");
+    std::vector<double> saved, restored;
+    for (int i = 0; i < count; ++i) {
+      saved.push_back(client.RoundTrip("checkpoint.save", R"({"name":"held"})"));
+      restored.push_back(client.RoundTrip("checkpoint.restore", R"({"name":"held"})"));
+    }
+    Print("save " + object, saved);
+    Print("restore " + object, restored);
+  }
+  daemon.Stop();
+  thread.join();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -60,17 +90,17 @@ int main(int argc, char** argv) {
   {
     Client client(config.socket);
     client.RoundTrip("grasp");
-    std::printf("%-10s %10s %10s %10s\n", "method", "median us", "p99 us", "max us");
+    std::printf("%-18s %10s %10s %10s\n", "method", "median us", "p99 us", "max us");
     for (const char* method :
          {"version", "status", "contacts", "quality", "joints", "truth", "param.get", "describe"}) {
       std::vector<double> times;
-      for (int i = 0; i < count; ++i) times.push_back(1e6 * client.RoundTrip(method));
-      std::ranges::sort(times);
-      std::printf("%-10s %10.1f %10.1f %10.1f\n", method, times[times.size() / 2],
-                  times[times.size() * 99 / 100], times.back());
+      for (int i = 0; i < count; ++i) times.push_back(client.RoundTrip(method));
+      Print(method, std::move(times));
     }
   }
   daemon.Stop();
   thread.join();
+  for (const char* object : {"sphere", "zoo_peanut_lying", "egg"})
+    Checkpoints(config, object, std::max(1, count / 20));
   std::filesystem::remove_all(directory);
 }

@@ -41,7 +41,16 @@ std::vector<LegendEntry> MarkLegend(const ExperimentPicture& picture,
       entries.push_back({series[s], [s](Canvas* c, Point2 at) {
                            c->FillBox({at.x - 9, at.y - 7, 18, 14}, ColourOfSeries(s));
                          }});
-  if (boxes)
+  bool points = false, summaries = false;
+  for (const ExperimentGroup& group : picture.groups)
+    for (const QuantileMark& q : group.measures) {
+      points = points || !q.few.empty();
+      summaries = summaries || (q.has_values && q.few.empty());
+    }
+  if (boxes && points)
+    entries.push_back(
+        {"one trial", [](Canvas* c, Point2 at) { c->Mark(Marker::kDisc, at, 5, kGrey); }});
+  if (boxes && (summaries || !points))
     entries.push_back({"5, 25, 50, 75, 95 % of the trials", [](Canvas* c, Point2 at) {
                          c->Line({at.x - 12, at.y}, {at.x + 12, at.y}, {kGrey, 2});
                          c->FillBox({at.x - 6, at.y - 7, 12, 14}, Tint(kGrey, 0.55));

@@ -33,6 +33,8 @@ void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, do
                    double height, Colour colour) {
   if (!q.has_values) return;
   const auto x = [&](double value) { return panel.At(value, 0).x; };
+  for (const double value : q.few) canvas->Mark(Marker::kDisc, {x(value), y}, 5, colour, colour);
+  if (!q.few.empty()) return;
   canvas->Line({x(q.q05), y}, {x(q.q95), y}, {colour, 2});
   const double left = x(q.q25), width = std::max(1.0, x(q.q75) - left);
   canvas->FillBox({left, y - height / 2, width, height}, Tint(colour, 0.55));
@@ -42,7 +44,9 @@ void DrawQuantiles(Canvas* canvas, const Panel& panel, const QuantileMark& q, do
 Axis MeasureAxis(const ExperimentPicture& picture, std::size_t which) {
   Range range;
   for (const auto& group : picture.groups)
-    if (const QuantileMark& q = group.measures.at(which); q.has_values)
+    if (const QuantileMark& q = group.measures.at(which); !q.few.empty())
+      range.Add(q.few);
+    else if (q.has_values)
       for (const double value : {q.q05, q.q95}) range.Add(value);
   if (range.empty()) range.Add(0);
   return NiceAxis(range.lo, range.hi, 5, true, picture.measure_labels.at(which));

@@ -13,9 +13,11 @@ struct ShareMark {
   double share = 0, low = 0, high = 1;
 };
 
-/// Five-number summary of one measured quantity; has_values false: nothing was measured.
+/// Five-number summary of one measured quantity; has_values false: nothing was measured. `few`: the
+/// values themselves where there are too few for a summary.
 struct QuantileMark {
   bool has_values = false;
+  std::vector<double> few = {};
   double q05 = 0, q25 = 0, median = 0, q75 = 0, q95 = 0;
 };
 
@@ -48,8 +50,9 @@ struct PredictionPicture {
 void PlotPrediction(const PredictionPicture& picture, const std::string& path);
 
 /// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of each measured
-/// quantity beside them (below them, on a narrow sheet). Groups of several panels go one below the
-/// other. Throws std::runtime_error with `path` as the other pictures do (snapshots.h).
+/// quantity, or its few values, beside them (below them, on a narrow sheet). Groups of several
+/// panels go one below the other. Throws std::runtime_error with `path` as the other pictures do
+/// (snapshots.h).
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path);
 
 /// Shares against the rows (levels of noise), a panel for each finger, series beside each other.

@@ -27,7 +27,11 @@ ShareMark Rest(const Json& count, std::string name) {
 QuantileMark Quantiles(const Json& json, double scale) {
   if (json.at("n") == 0) return {};
   const auto value = [&](const char* name) { return scale * json.at(name).get<double>(); };
-  return {true, value("q05"), value("q25"), value("median"), value("q75"), value("q95")};
+  std::vector<double> few;
+  if (json.contains("values"))
+    for (const Json& one : json.at("values")) few.push_back(scale * one.get<double>());
+  return {true,         std::move(few), value("q05"), value("q25"), value("median"),
+          value("q75"), value("q95")};
 }
 
 std::string Joined(const Json& names) {

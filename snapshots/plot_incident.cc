@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 constexpr int kLabelRows = 3;
+constexpr double kNarrowHeight = 1120;
 
 /// What a finger does, for its strip.
 enum class Activity { kHolds, kExplores, kMoves, kInTheAir, kNoContact };
@@ -65,20 +66,48 @@ std::string LetterOf(const HandModel& hand, int finger) {
 }
 
 /// Lines of at most `room` wide.
-std::vector<std::string> Wrapped(Canvas* canvas, const std::string& text, double size,
-                                 double room) {
+std::vector<std::string> Wrapped(const Canvas& canvas, const std::string& text, double size,
+                                 bool bold, double room) {
   std::vector<std::string> lines(1);
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
     std::string& line = lines.back();
-    if (!line.empty() && canvas->TextWidth(line + " " + word, size, true) > room)
+    if (!line.empty() && canvas.TextWidth(line + " " + word, size, bold) > room)
       lines.push_back(word);
     else
       line += (line.empty() ? "" : " ") + word;
     begin = end + 1;
   }
   return lines;
+}
+
+/// Cause and facts at the top; returns the y below them.
+double DrawHead(Canvas* canvas, const std::string& title, const std::string& facts) {
+  const bool narrow = canvas->narrow();
+  if (!canvas->with_title()) return narrow ? 14 : 34;
+  const double left = narrow ? 14 : 40, room = canvas->width() - 2 * left;
+  double y = narrow ? 24 : 34;
+  const auto write = [&](const std::string& text, TextStyle style, double line_height) {
+    for (const std::string& line : Wrapped(*canvas, text, style.size, style.bold, room)) {
+      canvas->Text({left, y}, line, style);
+      y += line_height;
+    }
+  };
+  write(title, {.size = narrow ? 21.0 : 24.0, .bold = true}, narrow ? 22 : 32);
+  write(facts, {.size = 18, .colour = kGrey}, narrow ? 19 : 26);
+  return y;
+}
+
+/// As many of the words as fit, and an ellipsis for the others.
+std::string Shortened(const Canvas& canvas, const std::string& text, double size, double room) {
+  if (canvas.TextWidth(text, size, true) <= room) return text;
+  std::string shorter = text;
+  do {
+    const std::size_t end = shorter.rfind(' ');
+    shorter.resize(end == std::string::npos ? 0 : end);
+  } while (!shorter.empty() && canvas.TextWidth(shorter + " …", size, true) > room);
+  return shorter.empty() ? "" : shorter + " …";
 }
 
 /// Something with a moment and a name.
@@ -122,25 +151,32 @@ void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
   const Box& area = panels.front().area;
   std::array<double, kLabelRows> taken;
   taken.fill(-1e9);
+  const auto at = [&](const Moment& moment) { return panels.front().At(moment.before_s, 0).x; };
+  for (const Moment& moment : moments)
+    if (const double x = at(moment); x >= area.x)
+      canvas->Line({x, y + 6}, {x, panels.back().area.br().y}, {moment.colour, 1.6, {6, 4}});
   for (const Moment& moment : moments) {
-    const double x = panels.front().At(moment.before_s, 0).x;
+    const double x = at(moment);
     if (x < area.x) continue;
-    const double width = canvas->TextWidth(moment.text, 18, true) + 12;
-    // To the right of its mark, or to the left where the panel ends.
-    const bool left = x + width + 12 > area.br().x;
+    // To the right of its mark, or to the left where there is more room.
+    constexpr double kMark = 12;
+    const double at_right = area.br().x - x - kMark, at_left = x - 8 - kMark;
+    const bool left = canvas->TextWidth(moment.text, 18, true) > at_right && at_left > at_right;
+    const std::string text = Shortened(*canvas, moment.text, 18, left ? at_left : at_right);
+    const double width = canvas->TextWidth(text, 18, true) + kMark;
     const double from = left ? x - width : x;
     const auto row = std::ranges::find_if(taken, [from](double end) { return end < from; });
     if (row != taken.end()) {
       const double line = y + 24.0 * static_cast<double>(row - taken.begin());
       *row = from + width + 8;
       canvas->Mark(Marker::kDown, {x, line}, 5, moment.colour);
-      canvas->Text({left ? x - 12 : x + 12, line}, moment.text,
+      canvas->Text({left ? x - kMark : x + kMark, line}, text,
                    {.size = 18,
                     .colour = Shade(moment.colour, 0.15),
                     .align_x = left ? AlignX::kRight : AlignX::kLeft,
-                    .bold = true});
+                    .bold = true,
+                    .halo = 2});
     }
-    canvas->Line({x, y + 6}, {x, panels.back().area.br().y}, {moment.colour, 1.6, {6, 4}});
   }
 }
 
@@ -152,28 +188,44 @@ void DrawLetter(Canvas* canvas, Point2 at, const HandModel& hand, int finger) {
                {.size = 15, .colour = kWhite, .align_x = AlignX::kCentre, .bold = true});
 }
 
+/// One for each panel. `limit`: of the lines that must not be crossed.
+std::array<LegendGroup, 3> Legends(const IncidentNote& note, const HandModel& hand,
+                                   const Pen& limit) {
+  std::vector<LegendEntry> fingers;
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    fingers.push_back({FingerName(hand, f), [&hand, f](Canvas* c, Point2 m) {
+                         c->Line(m - Point2(22, 0), m + Point2(22, 0), {LookOfFinger(f).colour, 3});
+                         DrawLetter(c, m, hand, f);
+                       }});
+  if (!note.ends.empty()) fingers.push_back(MarkEntry("last contact", Marker::kCross, kInk));
+  return {
+      LegendGroup{"normal force, true", std::move(fingers)},
+      LegendGroup{"load margin ρ, sensed",
+                  {LineEntry("of the grasp", {kInk, 3}),
+                   LineEntry(fmt::format("limit {:.2g} N", note.margin_limit), limit)}},
+      LegendGroup{"object, true",
+                  {LineEntry("off its place", {kInk, 3}),
+                   LineEntry(fmt::format("dropped: {:.2g} mm", note.drop_distance * kMillimetres),
+                             limit)}}};
+}
+
 }  // namespace
 
 void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
                   const IncidentNote& note, const HandModel& hand, const PlotOptions& options,
                   const std::string& path) {
   const auto frames = Newest(history, options.last_s, path);
-  Canvas canvas(SizeOf(options), path);
-  const double left = 150, width = canvas.width() - left - 250, bottom = canvas.height() - 90;
-
-  double y = 34;
-  const std::string title = options.title.empty() ? note.cause : options.title;
-  for (const std::string& line : Wrapped(&canvas, title, 24, canvas.width() - 80)) {
-    canvas.Text({40, y}, line, {.size = 24, .bold = true});
-    y += 32;
-  }
-  canvas.Text({40, y},
-              fmt::format("tick {} · {}", note.tick, Facts(frames, hand, options.object_name)),
-              {.size = 18, .colour = kGrey});
-  y += 26;
+  Canvas canvas(SizeOf(options, kNarrowHeight), path);
+  const int n = hand.num_fingers();
+  const Pen limit{kVermillion, 2, {12, 7}};
+  std::array<LegendGroup, 3> legends = Legends(note, hand, limit);
+  const Layout layout(canvas, legends);
+  const double left = layout.left, width = layout.width, bottom = layout.bottom;
+  const double y =
+      DrawHead(&canvas, options.title.empty() ? note.cause : options.title,
+               fmt::format("tick {} · {}", note.tick, Facts(frames, hand, options.object_name)));
 
   // Strips: state, gait (while there is one), every finger. Then the labels, then the panels.
-  const int n = hand.num_fingers();
   const bool gait = std::ranges::any_of(frames, [](const Frame& f) { return f.gait.active; });
   const double strip = std::min(24.0, 150.0 / std::max(1, n)), strips = y;
   const double fingers_top = strips + (gait ? 64 : 34);
@@ -182,7 +234,8 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   const double room = bottom - panels_top - 2 * 22;
 
   const auto before = Column(frames, [&](const Frame& f) { return f.time_s - note.time_s; });
-  const Axis time = NiceAxis(before.front(), 0, 9, false, "time before the drop [s]");
+  const Axis time =
+      NiceAxis(before.front(), 0, canvas.narrow() ? 5 : 9, false, "time before the drop [s]");
   std::vector<std::vector<double>> forces;
   Range force_range;
   force_range.Add(0);
@@ -234,8 +287,9 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   if (gait)
     DrawStrip(&canvas, panels[0], strips + 30, 24, "gait", bands(GaitStateOf), [&](int value) {
       if (value == kTurning) return BandLook{"all hold", Tint(kInk, 0.9)};
+      const std::string row(GaitStateNameOf(hand, value).view());
       return BandLook{FingerName(hand, value) + " regrasps", Tint(LookOfFinger(value).colour, 0.42),
-                      std::string(GaitStateNameOf(hand, value).view())};
+                      "S_{" + row.substr(2) + "}"};
     });
   for (int f = 0; f < n; ++f)
     DrawStrip(&canvas, panels[0], fingers_top + f * (strip + 4), strip, FingerName(hand, f),
@@ -254,7 +308,6 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
 
   for (int f = 0; f < n; ++f)
     DrawCurve(&canvas, panels[0], before, forces[f], {LookOfFinger(f).colour, 3});
-  const Pen limit{kVermillion, 2, {12, 7}};
   canvas.Line({left, limit_y}, {left + width, limit_y}, limit);
   const double lost_y = panels[2].At(0, note.drop_distance * kMillimetres).y;
   if (lost_y > panels[2].area.y) canvas.Line({left, lost_y}, {left + width, lost_y}, limit);
@@ -276,23 +329,8 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   }
   for (const Panel& panel : panels) DrawFrame(&canvas, panel);
 
-  const double side = left + width + 24;
-  std::vector<LegendEntry> fingers;
-  for (int f = 0; f < n; ++f)
-    fingers.push_back({FingerName(hand, f), [&hand, f](Canvas* c, Point2 m) {
-                         c->Line(m - Point2(22, 0), m + Point2(22, 0), {LookOfFinger(f).colour, 3});
-                         DrawLetter(c, m, hand, f);
-                       }});
-  if (!note.ends.empty()) fingers.push_back(MarkEntry("last contact", Marker::kCross, kInk));
-  DrawLegend(&canvas, {side, panels[0].area.y}, "normal force, true", fingers);
-  const std::array<LegendEntry, 2> margins = {
-      LineEntry("of the grasp", {kInk, 3}),
-      LineEntry(fmt::format("limit {:.2g} N", note.margin_limit), limit)};
-  DrawLegend(&canvas, {side, panels[1].area.y}, "load margin ρ, sensed", margins);
-  const std::array<LegendEntry, 2> errors = {
-      LineEntry("off its place", {kInk, 3}),
-      LineEntry(fmt::format("dropped: {:.2g} mm", note.drop_distance * kMillimetres), limit)};
-  DrawLegend(&canvas, {side, panels[2].area.y}, "object, true", errors);
+  for (std::size_t i = 0; i < panels.size(); ++i) legends[i].y = panels[i].area.y;
+  layout.DrawLegends(&canvas, legends);
   canvas.Save();
 }
 

@@ -17,8 +17,9 @@ namespace {
 constexpr Colour kPalm{214, 214, 218}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
 constexpr double kTop = 104, kGap = 20;  // of the views on a wide sheet
 constexpr double kNarrowHeight = 1050, kNarrowMargin = 14, kNarrowGap = 10;
-constexpr double kScaleBar = 0.02;   // [m]
-constexpr double kOutOfView = 0.15;  // an object this far from every fingertip is left out [m]
+constexpr double kFilmDetail = 0.75;  // of the bodies; 1.5 x 1.5 samples a pixel instead of 2 x 2
+constexpr double kScaleBar = 0.02;    // [m]
+constexpr double kOutOfView = 0.15;   // an object this far from every fingertip is left out [m]
 
 /// False once the object has fallen away, or its pose is no number after a fault: the picture is of
 /// the hand.
@@ -97,11 +98,25 @@ double NiceBelow(double value) {
   return power * (ratio >= 5 ? 5 : ratio >= 2 ? 2 : 1);
 }
 
+/// `detail`: pixels rendered per pixel of the picture, along either side.
+cv::Mat RenderWith(double detail, std::span<const Body> bodies, const Camera& camera,
+                   cv::Size size) {
+  if (detail == 1) return Render(bodies, camera, size);
+  Camera coarse = camera;
+  coarse.focal_px *= detail;
+  coarse.centre_x_px = (camera.centre_x_px + 0.5) * detail - 0.5;
+  coarse.centre_y_px = (camera.centre_y_px + 0.5) * detail - 0.5;
+  const cv::Size less(cvRound(size.width * detail), cvRound(size.height * detail));
+  cv::Mat picture;
+  cv::resize(Render(bodies, coarse, less), picture, size, 0, 0, cv::INTER_LINEAR);
+  return picture;
+}
+
 /// One of the two pictures: the rendered bodies with everything that is written on them.
 class ViewPainter {
  public:
   ViewPainter(Canvas* canvas, const Box& box, std::span<const Body> bodies,
-              const Vector3d& to_viewer, const Vector3d& up)
+              const Vector3d& to_viewer, const Vector3d& up, double detail)
       : canvas_(canvas), box_(box) {
     const cv::Size size = canvas->PixelsOf(box);
     // Room above for names and directions, below for the scales; a narrow sheet has it at the
@@ -111,7 +126,7 @@ class ViewPainter {
     camera_ = FitCamera(bodies, to_viewer, up,
                         size - cv::Size(0, static_cast<int>((above + below) * unit)), 34 * unit);
     camera_.centre_y_px += above * unit;
-    const cv::Mat picture = Render(bodies, camera_, size);
+    const cv::Mat picture = RenderWith(detail, bodies, camera_, size);
     canvas->Paste(picture, box);
     cv::Mat grey;
     cv::extractChannel(picture, grey, 1);
@@ -318,7 +333,7 @@ Vector3d UpFor(const Vector3d& to_viewer, const Vector3d& gravity_W) {
 }
 
 void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const ObjectModel& object,
-               const PlotOptions& options) {
+               const PlotOptions& options, double detail) {
   if (frame.q.size() != hand.num_joints())
     throw std::runtime_error(
         fmt::format("{}: nothing to draw: the frame has {} joint angles, hand {} has {} joints",
@@ -346,7 +361,7 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
   for (std::size_t i = 0; i < kSides.size(); ++i) {
     const Box& box = boxes[i];
     ViewPainter view(canvas, box, bodies, kSides[i].to_viewer,
-                     UpFor(kSides[i].to_viewer, frame.gravity_W));
+                     UpFor(kSides[i].to_viewer, frame.gravity_W), detail);
     canvas->Clip(box);
     for (const Frame::Contact& contact : frame.contacts)
       view.Force(contact.p_WC, contact.force_W, forces.metres_per_newton(),
@@ -371,14 +386,14 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
 void PlotScene(const Frame& frame, const HandModel& hand, const ObjectModel& object,
                const PlotOptions& options, const std::string& path) {
   Canvas canvas(SizeOf(options, kNarrowHeight), path);
-  DrawScene(&canvas, frame, hand, object, options);
+  DrawScene(&canvas, frame, hand, object, options, 1);
   canvas.Save();
 }
 
 Pixels ScenePixels(const Frame& frame, const HandModel& hand, const ObjectModel& object,
                    const PlotOptions& options) {
   Canvas canvas(SizeOf(options, kNarrowHeight));
-  DrawScene(&canvas, frame, hand, object, options);
+  DrawScene(&canvas, frame, hand, object, options, kFilmDetail);
   const std::string bytes = canvas.Bytes();
   return {bytes.begin(), bytes.end()};
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -63,10 +64,11 @@ class RasterSheet final : public Sheet {
   RasterSheet(const SheetSize& size, const Fonts& fonts)
       : size_(size),
         scale_(size.unit * kOversampling),
-        image_(size.height_px * kOversampling, size.width_px * kOversampling, CV_8UC3,
-               cv::Scalar::all(255)),
+        image_(size.height_px * kOversampling, size.width_px * kOversampling, CV_8UC3),
         target_(image_),
-        fonts_(fonts) {}
+        fonts_(fonts) {
+    std::memset(image_.data, 255, image_.total() * image_.elemSize());  // white
+  }
 
   void Clip(const Box& box) override;
   void Unclip() override;

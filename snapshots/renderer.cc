@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
@@ -27,8 +28,9 @@ struct Buffers {
   cv::Mat_<std::int16_t> body;
   cv::Mat_<cv::Vec3f> normal;
 
+  bool Hides(int x, int y, double z) const { return z < depth(y, x); }
   void Put(int x, int y, double z, int index, const Vector3d& n) {
-    if (!(z < depth(y, x))) return;
+    if (!Hides(x, y, z)) return;
     depth(y, x) = static_cast<float>(z);
     body(y, x) = static_cast<std::int16_t>(index);
     normal(y, x) =
@@ -82,7 +84,7 @@ void DrawCapsule(const Body& body, int index, const Camera& camera, Buffers* out
         t = ta > 0 && (tb <= 0 || ta < tb) ? ta : tb;
         along = t == ta ? 0 : length;
       }
-      if (t > 0) out->Put(x, y, t, index, (d * t - a - e * along) / r);
+      if (t > 0 && out->Hides(x, y, t)) out->Put(x, y, t, index, (d * t - a - e * along) / r);
     }
   }
 }
@@ -274,7 +276,8 @@ cv::Mat Render(std::span<const Body> bodies, const Camera& camera, cv::Size size
   const Vector3f half_way = (key - Vector3f::UnitZ()).normalized();
   std::vector<Isometry3d> X_BC;
   for (const Body& body : bodies) X_BC.push_back((camera.X_CW * body.X_WB).inverse());
-  cv::Mat picture(size, CV_8UC3, cv::Scalar::all(255));
+  cv::Mat picture(size, CV_8UC3);
+  std::memset(picture.data, 255, picture.total() * picture.elemSize());
   for (int y = 0; y < size.height; ++y) {
     const std::int16_t* shown = buffers.body[y];
     const float *depth = buffers.depth[y], *depth_around = around[y];

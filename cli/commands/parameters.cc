@@ -155,7 +155,9 @@ ExitCode Save(Context& context, const Invocation& invocation) {
   const std::size_t count = At(answer, "parameters").size();
   context.Print({{"file", file}, {"count", count}}, [&] {
     context.out().Line(fmt::format("{}: {} parameter{}{}", file, count, count == 1 ? "" : "s",
-                                   all ? "" : " that differ from the defaults"));
+                                   all          ? ""
+                                   : count == 1 ? " that differs from its default"
+                                                : " that differ from their defaults"));
   });
   return kOk;
 }

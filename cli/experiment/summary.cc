@@ -59,6 +59,8 @@ Json Quantiles(std::vector<double> values) {
   json["sd"] = StandardDeviation(values);
   if (const auto interval = MedianInterval(values))
     json.update({{"median_low", interval->low}, {"median_high", interval->high}});
+  constexpr std::size_t kTooFew = 5;  // for quantiles to mean anything: the picture has points
+  if (values.size() < kTooFew) json["values"] = values;
   return json;
 }
 

@@ -16,7 +16,8 @@ std::string MapsCsv(const Trials& trials);
 
 /// {"experiment": the plan, "trials": n, "groups": [{"noise", "estimator", "finger" | "axis_W",
 /// "n", "counts": {NAME: {"k", "share", "low", "high"}}, "quantiles": {COLUMN: {"n", "min", "q05",
-/// "q25", "median", "q75", "q95", "max", "mean", "sd", "median_low", "median_high"}}}],
+/// "q25", "median", "q75", "q95", "max", "mean", "sd", "median_low", "median_high"; below five
+/// trials "values"}}}],
 /// "comparisons": see Comparisons(), where there is anything to compare}. Shares are of all n
 /// trials, also of those that were not grasped or refused, with Wilson's 95 % interval.
 /// Explorations with several fingers also have a group "all" for each noise and estimator.

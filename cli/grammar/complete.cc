@@ -38,6 +38,7 @@ constexpr KnownElsewhere kKnownElsewhere[] = {
     {"replay", "run", "record.list", "file"},
     {"export", "run", "record.list", "file"},
     {"video", "run", "record.list", "file"},
+    {"plot", "run", "record.list", "file"},
     {"experiment exploration", "finger", "explore", "finger"}};
 
 /// The words read from left to right: how far the command goes, and what is still to come.

@@ -51,6 +51,10 @@ Arg FromParam(const ParamSpec& param, bool positional) {
   switch (param.type) {
     case ParamType::kBool:
       arg.kind = ArgKind::kFlag;
+      if (param.default_text != "true") break;
+      arg.flags = "--no-" + name;  // what is there without it
+      arg.help = "without " + arg.help;
+      arg.default_text.clear();
       break;
     case ParamType::kInteger:
       arg.kind = ArgKind::kInteger;

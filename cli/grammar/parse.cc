@@ -37,7 +37,10 @@ struct Node {
 void AddArg(CLI::App* app, Given* given) {
   const Arg& arg = *given->arg;
   if (arg.kind == ArgKind::kFlag) {
-    given->option = app->add_flag(arg.flags, given->flag);
+    // --no-title sets title to false, as --title=false does.
+    const bool takes_away = arg.wire && arg.flags.starts_with("--no-");
+    given->option = app->add_flag(
+        takes_away ? "!" + arg.flags + ",--" + arg.flags.substr(5) : arg.flags, given->flag);
   } else {
     given->option = app->add_option(arg.flags.empty() ? arg.key : arg.flags, given->text);
     if (arg.repeated) given->option->join('\n');
@@ -362,8 +365,9 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
       const bool present = given.option->count() > 0;
       if (!present && arg.required)
         throw CliError(kUsage, fmt::format("{} is missing", ArgName(arg)));
-      if (!present || (arg.kind == ArgKind::kFlag && !given.flag)) continue;
-      const Json value = ToWire(arg, given.text, scope);
+      const bool flag = arg.kind == ArgKind::kFlag;
+      if (!present || (flag && !given.flag && !arg.wire)) continue;
+      const Json value = flag ? Json(given.flag) : ToWire(arg, given.text, scope);
       if (arg.wire) {
         invocation.params[arg.key] = value;
       } else {

@@ -163,6 +163,11 @@ VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std
   else
     film = std::make_unique<GifFilm>(draft.path(), options.fps, painter.size());
 
+  // What has been drawn is written while the next pictures are drawn.
+  std::future<void> writing;
+  const auto written = [&writing] {
+    if (writing.valid()) writing.get();
+  };
   Replay& replay = window->replay();
   const double start_s = static_cast<double>(window->start_tick()) * dt;
   const int before = static_cast<int>((options.stretch.from_s - start_s) / step_s);
@@ -172,12 +177,16 @@ VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std
                                            replay.divergence().tick));
     painter.See(&replay.session(), i >= 0);
     if (!painter.full() && i + 1 < total) continue;
-    for (const cv::Mat& picture : painter.Paint()) {
-      film->Add(picture);
-      result.interrupted = !on_picture(++result.frames, total);
-      if (result.interrupted) return result;
-    }
+    std::vector<cv::Mat> pictures = painter.Paint();
+    written();
+    result.frames += static_cast<int>(pictures.size());
+    writing = std::async(std::launch::async, [&film, pictures = std::move(pictures)] {
+      for (const cv::Mat& picture : pictures) film->Add(picture);
+    });
+    result.interrupted = !on_picture(result.frames, total);
+    if (result.interrupted) return result;
   }
+  written();
   film->Finish();
   draft.Commit();
   result.duration_s = result.frames / options.fps;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstring>
 
 #include "core/files/names.h"
 #include "core/journal/check.h"
@@ -89,7 +90,13 @@ void CommandFields(A& a, Command& c, std::string& finger, std::string& parameter
 
 std::uint64_t TextHash(std::string_view text) {
   StateHasher hasher;
-  for (char c : text) hasher.Add(c);
+  hasher.Add(text.size());
+  for (std::uint64_t word = 0; !text.empty();
+       text.remove_prefix(std::min(sizeof word, text.size()))) {
+    word = 0;
+    std::memcpy(&word, text.data(), std::min(sizeof word, text.size()));
+    hasher.Add(word);
+  }
   return hasher.Digest();
 }
 
@@ -130,7 +137,7 @@ std::uint64_t ParseHash(const std::string& text) {
   return hash;
 }
 
-std::string ConfigText(const SessionConfig& config, int segment) {
+std::string ConfigText(const SessionConfig& config, int segment, ModelText* known) {
   Save save;
   save("format", std::string(kRunFormat));
   save("build", std::string(BuildIdentity()));
@@ -142,12 +149,16 @@ std::string ConfigText(const SessionConfig& config, int segment) {
   save("parameters", config.parameters);
   save.json["changed_parameters"] = ChangedParameters(config);
   save("world", config.world);
-  save("model", config.model);
-  return save.json.dump();
+  std::string text = save.json.dump();
+  text.back() = ',';  // the model is the last field, so that a known one is found at the end
+  text += "\"model\":";
+  text += known ? known->Of(config.model) : ModelJson(config.model);
+  return text + "}";
 }
 
-ConfigRead ParseConfig(std::string_view text) {
-  const Json json = ParseFileJson(text);
+ConfigRead ParseConfig(std::string_view text, ModelText* known) {
+  const std::optional<std::string> rest = known ? known->Without(text) : std::nullopt;
+  const Json json = ParseFileJson(rest ? *rest : text);
   CheckFormat(json, kRunFormat, kFormerRunFormat);
   ConfigRead read;
   Load load{json};
@@ -157,8 +168,12 @@ ConfigRead ParseConfig(std::string_view text) {
   load("noise", read.config.noise);
   load("parameters", read.config.parameters);
   load("world", read.config.world);
-  load("model", read.config.model);
+  if (rest)
+    read.config.model = known->model();
+  else
+    load("model", read.config.model);
   CheckConfig(read.config);
+  if (known && !rest) known->Of(read.config.model);
   return read;
 }
 
@@ -208,8 +223,6 @@ EntryRead ParseEntry(std::string_view text, const SessionConfig& config) {
   return read;
 }
 
-std::string HandText(const HandModel& hand) { return fields::ToJson(hand).dump(); }
-
 ModelHashes HashModels(const LoadedScenario& model) {
   const auto hash = [](const Json& json) {
     std::uint64_t value = 0xcbf29ce484222325ULL;  // FNV-1a
@@ -221,7 +234,7 @@ ModelHashes HashModels(const LoadedScenario& model) {
           hash(fields::ToJson(model.object))};
 }
 
-std::string CheckpointText(const Checkpoint& checkpoint) {
+std::string CheckpointText(const Checkpoint& checkpoint, ModelText* known) {
   const SessionConfig& config = checkpoint.journal.config;
   Save head;
   head("format", std::string(kCheckpointFormat));
@@ -236,7 +249,7 @@ std::string CheckpointText(const Checkpoint& checkpoint) {
   head("commands", checkpoint.journal.entries.size());
   head("job", checkpoint.job.id);
   head("job_method", checkpoint.job.method);
-  std::string text = head.json.dump() + "\n" + ConfigText(config, 0) + "\n";
+  std::string text = head.json.dump() + "\n" + ConfigText(config, 0, known) + "\n";
   for (std::size_t i = 0; i < checkpoint.journal.entries.size(); ++i)
     text += EntryText(checkpoint.journal.entries[i], config, 0, i) + "\n";
   if (checkpoint.saved_state.empty()) return text;
@@ -274,7 +287,7 @@ Checkpoint ParseCheckpointHead(std::string_view line) {
   return checkpoint;
 }
 
-Checkpoint ParseCheckpoint(std::string_view text) {
+Checkpoint ParseCheckpoint(std::string_view text, ModelText* known) {
   const std::string_view whole = text;
   const auto next_line = [&text] {
     const auto end = text.find('\n');
@@ -284,7 +297,7 @@ Checkpoint ParseCheckpoint(std::string_view text) {
     return line;
   };
   Checkpoint checkpoint = ParseCheckpointHead(next_line());
-  checkpoint.journal.config = ParseConfig(next_line()).config;
+  checkpoint.journal.config = ParseConfig(next_line(), known).config;
   auto& entries = checkpoint.journal.entries;
   while (entries.size() < checkpoint.commands) {
     entries.push_back(ParseEntry(next_line(), checkpoint.journal.config).entry);

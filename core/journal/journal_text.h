@@ -7,19 +7,21 @@
 #include <string_view>
 
 #include "core/journal/journal.h"
+#include "core/journal/model_text.h"
 
 namespace regrasp {
 
 /// The configuration of a run: {format, build, segment, hand, object, seed, noise, parameters,
-/// world, model}. One line.
-std::string ConfigText(const SessionConfig& config, int segment);
+/// world, model}. One line. `known`: where the model and its text are kept for the next time, here
+/// and below.
+std::string ConfigText(const SessionConfig& config, int segment, ModelText* known = nullptr);
 struct ConfigRead {
   SessionConfig config;
   std::string build;
   int segment = 0;
 };
 /// Throws JournalError that names the field.
-ConfigRead ParseConfig(std::string_view text);
+ConfigRead ParseConfig(std::string_view text, ModelText* known = nullptr);
 
 /// A command: {segment, seq, tick, t_s, method, ..., state_hash}. `seq` counts the commands of the
 /// run from 0.
@@ -32,9 +34,6 @@ struct EntryRead {
 };
 EntryRead ParseEntry(std::string_view text, const SessionConfig& config);
 
-/// The model of the hand as text: two hands are the same when these are.
-std::string HandText(const HandModel& hand);
-
 /// A model as it was read from its files: 64 bits over everything that the simulation and the
 /// controller take from them, so that the same files elsewhere, or written otherwise, are the same.
 struct ModelHashes {
@@ -43,10 +42,10 @@ struct ModelHashes {
 ModelHashes HashModels(const LoadedScenario& model);
 
 /// A checkpoint as JSON lines: what it is, the configuration, the commands, the saved state.
-std::string CheckpointText(const Checkpoint& checkpoint);
+std::string CheckpointText(const Checkpoint& checkpoint, ModelText* known = nullptr);
 /// Throws JournalError. A saved state that does not belong to the lines before it (the file was
 /// changed) is left out.
-Checkpoint ParseCheckpoint(std::string_view text);
+Checkpoint ParseCheckpoint(std::string_view text, ModelText* known = nullptr);
 /// Only what the first line tells: everything but the journal.
 Checkpoint ParseCheckpointHead(std::string_view line);
 

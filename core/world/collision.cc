@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/world/last_mesh.h"
+
 namespace regrasp {
 namespace {
 
@@ -55,7 +57,23 @@ double DistanceToBox(const Vector3d& p, const Vector3d& half) {
   return (p.cwiseAbs() - half).cwiseMax(0.0).norm();
 }
 
+std::shared_ptr<const OdeMesh> SharedOdeMesh(const ObjectModel& object) {
+  static LastMesh<OdeMesh> last;
+  return last.Of(object.vertices_O, object.triangles);
+}
+
 }  // namespace
+
+OdeMesh::OdeMesh(const std::vector<Vector3d>& vertices_O,
+                 const std::vector<Eigen::Vector3i>& triangles)
+    : data_(dGeomTriMeshDataCreate()) {
+  for (const Vector3d& v : vertices_O) vertices_.insert(vertices_.end(), {v.x(), v.y(), v.z()});
+  for (const Eigen::Vector3i& t : triangles)
+    for (int k = 0; k < 3; ++k) indices_.push_back(static_cast<dTriIndex>(t[k]));
+  dGeomTriMeshDataBuildDouble(data_, vertices_.data(), 3 * sizeof(double),
+                              static_cast<int>(vertices_O.size()), indices_.data(),
+                              static_cast<int>(indices_.size()), 3 * sizeof(dTriIndex));
+}
 
 Collider::Collider(const HandModel& hand, const Articulation& articulation,
                    const ObjectModel& object, const std::vector<dBodyID>& bodies,
@@ -118,16 +136,9 @@ Collider::Collider(const HandModel& hand, const Articulation& articulation,
       object_.half = object.half_extents;
       break;
     case ObjectModel::Kind::kMesh:
-      for (const Vector3d& v : object.vertices_O)
-        mesh_vertices_.insert(mesh_vertices_.end(), {v.x(), v.y(), v.z()});
-      for (const Eigen::Vector3i& t : object.triangles)
-        for (int k = 0; k < 3; ++k) mesh_indices_.push_back(static_cast<dTriIndex>(t[k]));
-      surface_.emplace(object.vertices_O, object.triangles);
-      mesh_ = dGeomTriMeshDataCreate();
-      dGeomTriMeshDataBuildDouble(mesh_, mesh_vertices_.data(), 3 * sizeof(double),
-                                  static_cast<int>(object.vertices_O.size()), mesh_indices_.data(),
-                                  static_cast<int>(mesh_indices_.size()), 3 * sizeof(dTriIndex));
-      object_.geom = dCreateTriMesh(nullptr, mesh_, nullptr, nullptr, nullptr);
+      surface_ = SurfaceMesh::Shared(object.vertices_O, object.triangles);
+      mesh_ = SharedOdeMesh(object);
+      object_.geom = dCreateTriMesh(nullptr, mesh_->data(), nullptr, nullptr, nullptr);
       object_.box = true;  // may rest on a box with several contacts
       break;
   }
@@ -154,13 +165,11 @@ Collider::~Collider() {
   for (Part& part : parts_)
     if (part.geom) dGeomDestroy(part.geom);
   if (object_.geom) dGeomDestroy(object_.geom);
-  if (mesh_) dGeomTriMeshDataDestroy(mesh_);
 }
 
 void Collider::Abandon() {
   for (Part& part : parts_) part.geom = nullptr;
   object_.geom = nullptr;
-  mesh_ = nullptr;
 }
 
 bool Collider::MayTouch(const Part& a, const Part& b) const {

@@ -6,7 +6,7 @@
 
 #include <ode/ode.h>
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "core/common/fixed_vector.h"
@@ -34,6 +34,21 @@ struct LinkHit {
 };
 
 inline constexpr int kMaxLinkHits = 32;
+
+/// A mesh as ODE holds it; only read once it is made.
+class OdeMesh {
+ public:
+  OdeMesh(const std::vector<Vector3d>& vertices_O, const std::vector<Eigen::Vector3i>& triangles);
+  ~OdeMesh() { dGeomTriMeshDataDestroy(data_); }
+  OdeMesh(const OdeMesh&) = delete;
+  OdeMesh& operator=(const OdeMesh&) = delete;
+  dTriMeshDataID data() const { return data_; }
+
+ private:
+  std::vector<double> vertices_;
+  std::vector<dTriIndex> indices_;
+  dTriMeshDataID data_;
+};
 
 class Collider {
  public:
@@ -82,10 +97,9 @@ class Collider {
   std::vector<Part> parts_;
   std::vector<Pair> pairs_;
   Part object_;
-  std::optional<SurfaceMesh> surface_;  // mesh object, against capsules
-  dTriMeshDataID mesh_ = nullptr;       // mesh object, against boxes
-  std::vector<double> mesh_vertices_;
-  std::vector<dTriIndex> mesh_indices_;
+  // Of a mesh object, shared by all worlds of it: against capsules, against boxes.
+  std::shared_ptr<const SurfaceMesh> surface_;
+  std::shared_ptr<const OdeMesh> mesh_;
 };
 
 }  // namespace regrasp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <optional>
 
 #include "core/common/box_corners.h"
@@ -18,15 +19,17 @@ double ToBox(const Vector3d& p, const Vector3d& half) {
   return beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
 }
 
-/// How far points lie from an object's surface; negative inside.
+/// How far points lie from an object's surface; negative inside. Of points that lie `reach` or more
+/// outside only that they do.
 class ObjectDistance {
  public:
   explicit ObjectDistance(const ObjectModel& object) : object_(object) {
-    if (object.kind == ObjectModel::Kind::kMesh)
-      surface_.emplace(object.vertices_O, object.triangles);
+    if (object.kind != ObjectModel::Kind::kMesh) return;
+    surface_ = SurfaceMesh::Shared(object.vertices_O, object.triangles);
+    for (const Vector3d& v : object.vertices_O) box_.extend(v);
   }
 
-  double operator()(const Vector3d& p_O) const {
+  double operator()(const Vector3d& p_O, double reach) const {
     switch (object_.kind) {
       case ObjectModel::Kind::kSphere:
         return p_O.norm() - object_.radius;
@@ -39,14 +42,18 @@ class ObjectDistance {
       case ObjectModel::Kind::kMesh:
         break;
     }
-    const double far = 2 * object_.bounding_radius + p_O.norm();
-    const double distance = surface_->ClosestToSegment(p_O, p_O, far)->distance;
-    return IsInside(object_.vertices_O, object_.triangles, p_O) ? -distance : distance;
+    if (box_.contains(p_O) && IsInside(object_.vertices_O, object_.triangles, p_O)) {
+      const double far = 2 * object_.bounding_radius + p_O.norm();
+      return -surface_->ClosestToSegment(p_O, p_O, far)->distance;
+    }
+    const auto closest = surface_->ClosestToSegment(p_O, p_O, reach);
+    return closest ? closest->distance : reach;
   }
 
  private:
   const ObjectModel& object_;
-  std::optional<SurfaceMesh> surface_;
+  std::shared_ptr<const SurfaceMesh> surface_;
+  Eigen::AlignedBox3d box_;  // of a mesh
 };
 
 /// Points of the object's surface or core, and how far around each the object reaches.
@@ -82,13 +89,15 @@ double DepthOf(const Shape& shape, const Isometry3d& X_OL, const ObjectDistance&
     const int steps = shape.a_L == shape.b_L ? 0 : 8;
     for (int k = 0; k <= steps; ++k)
       depth = std::max(
-          depth, shape.radius - distance(X_OL * (shape.b_L + k / 8.0 * (shape.a_L - shape.b_L))));
+          depth, shape.radius - distance(X_OL * (shape.b_L + k / 8.0 * (shape.a_L - shape.b_L)),
+                                         shape.radius));
     return depth;
   }
   const Isometry3d X_OB = X_OL * shape.X_LB;
   for (int i = 0; i < 27; ++i)
     depth = std::max(depth, -distance(X_OB * shape.half_extents.cwiseProduct(
-                                                 Vector3d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1))));
+                                                 Vector3d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)),
+                                      0.0));
   const Isometry3d X_BO = X_OB.inverse();
   for (const Vector3d& p_O : core.points_O)
     depth = std::max(depth, core.radius - ToBox(X_BO * p_O, shape.half_extents));

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "core/world/last_mesh.h"
+
 namespace regrasp {
 namespace {
 
@@ -72,6 +74,12 @@ SurfaceMesh::SurfaceMesh(const std::vector<Vector3d>& vertices_O,
   }
   nodes_.emplace_back();
   Build(0, 0, static_cast<int>(triangles_.size()));
+}
+
+std::shared_ptr<const SurfaceMesh> SurfaceMesh::Shared(
+    const std::vector<Vector3d>& vertices_O, const std::vector<Eigen::Vector3i>& triangles) {
+  static LastMesh<SurfaceMesh> last;
+  return last.Of(vertices_O, triangles);
 }
 
 void SurfaceMesh::Build(int node, int begin, int end) {

@@ -6,6 +6,7 @@
 /// the link moves.
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,9 @@ class SurfaceMesh {
   /// Vertices in O [m]; triangles counter-clockwise seen from outside. At least one triangle.
   SurfaceMesh(const std::vector<Vector3d>& vertices_O,
               const std::vector<Eigen::Vector3i>& triangles);
+  /// The same, shared with whoever uses the one of this mesh (LastMesh). Any thread.
+  static std::shared_ptr<const SurfaceMesh> Shared(const std::vector<Vector3d>& vertices_O,
+                                                   const std::vector<Eigen::Vector3i>& triangles);
 
   struct Closest {
     Vector3d p_OSegment = Vector3d::Zero();      ///< closest point of the segment [m]

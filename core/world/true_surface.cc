@@ -13,7 +13,8 @@ TrueSurface::TrueSurface(const ObjectModel& object)
       half_extents_(object.half_extents),
       vertices_O_(object.vertices_O),
       triangles_(object.triangles) {
-  if (kind_ == ObjectModel::Kind::kMesh) mesh_.emplace(object.vertices_O, object.triangles);
+  if (kind_ == ObjectModel::Kind::kMesh)
+    mesh_ = SurfaceMesh::Shared(object.vertices_O, object.triangles);
 }
 
 TrueSurface::Nearest TrueSurface::At(const Vector3d& p) const {

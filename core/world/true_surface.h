@@ -2,7 +2,7 @@
 
 /// The object's true surface, for judging what was felt of it.
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "core/hand/object_model.h"
@@ -28,7 +28,7 @@ class TrueSurface {
   Vector3d half_extents_;
   std::vector<Vector3d> vertices_O_;
   std::vector<Eigen::Vector3i> triangles_;
-  std::optional<SurfaceMesh> mesh_;  // of both
+  std::shared_ptr<const SurfaceMesh> mesh_;  // of both
 };
 
 }  // namespace regrasp

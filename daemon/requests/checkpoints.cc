@@ -80,6 +80,7 @@ struct RestoreRequest {
   double dt = 0;                    ///< the daemon's [s]
   bool reexecute = false, reseed = false;
   std::uint64_t seed = 0;
+  std::shared_ptr<ModelText> model_text;
 };
 
 RpcException Refusal(ErrorCode code, std::string message, std::string hint) {
@@ -97,13 +98,14 @@ std::shared_ptr<const Checkpoint> Read(const RestoreRequest& request) {
   }
   std::shared_ptr<const Checkpoint> checkpoint;
   try {
-    checkpoint = std::make_shared<const Checkpoint>(ParseCheckpoint(ReadFile(request.path)));
+    checkpoint = std::make_shared<const Checkpoint>(
+        ParseCheckpoint(ReadFile(request.path), request.model_text.get()));
   } catch (const std::exception& e) {
     throw Refusal(ErrorCode::kIo, fmt::format("{}: {}", request.path.string(), e.what()),
                   "regrasp checkpoint save NAME");
   }
   const SessionConfig& config = checkpoint->journal.config;
-  if (HandText(config.model.hand) != HandText(*request.hand) || config.world.dt != request.dt)
+  if (HandBytes(config.model.hand) != HandBytes(*request.hand) || config.world.dt != request.dt)
     throw Refusal(ErrorCode::kBadState,
                   fmt::format("checkpoint '{}' is of another hand ({}) or time step ({} s)",
                               request.name, config.model.hand.name, config.world.dt),
@@ -199,13 +201,14 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
                               .commands = service.journal().entries.size(),
                               .journal = service.journal(),
                               .saved_state = ToBase64(*mark.saved)};
-          const auto write = [work, path, most = service.config().budgets.checkpoints] {
+          const auto write = [work, path, most = service.config().budgets.checkpoints,
+                              model_text = service.model_text()] {
             try {
               if (!fs::exists(path) && FilesIn(path.parent_path(), {kSuffix}).size() >= most)
                 throw std::runtime_error(
                     fmt::format("{} checkpoints are in {}, as many as max_checkpoints allows", most,
                                 path.parent_path().string()));
-              ReplaceFile(path, CheckpointText(work->checkpoint));
+              ReplaceFile(path, CheckpointText(work->checkpoint, model_text.get()));
             } catch (const std::exception& e) {
               work->failure = e.what();
             }
@@ -247,7 +250,8 @@ Outcome CheckpointRestore(Service& service, const Params& params, Client&) {
                          .dt = service.dt(),
                          .reexecute = params.Bool("reexecute", false),
                          .reseed = params.Has("seed"),
-                         .seed = static_cast<std::uint64_t>(params.Integer("seed", 0))};
+                         .seed = static_cast<std::uint64_t>(params.Integer("seed", 0)),
+                         .model_text = service.model_text()};
   Outcome outcome;
   outcome.begin = [&service, request = std::move(request)](Done done) {
     const auto restored = std::make_shared<Restored>();

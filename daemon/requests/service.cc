@@ -25,6 +25,11 @@ Service::Service(ServiceConfig config, Host* host)
   Drain();
 }
 
+void Service::PrepareModelText() {
+  host_->Background(
+      [text = model_text_, model = config_.control.session.model] { text->Of(model); }, [] {});
+}
+
 void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
   const Scenario& scenario = config_.control.session.model.scenario;
   KinematicsData data;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/hand/scenario.h"
+#include "core/journal/model_text.h"
 #include "core/protocol/methods.h"
 #include "core/session/parameters.h"
 #include "daemon/loop/control_loop.h"
@@ -157,6 +158,10 @@ class Service {
   std::uint64_t run() const { return run_; }  ///< its number
   /// The run file that is being written, or null.
   const std::shared_ptr<Recorder>& recorder() const { return recorder_; }
+  /// What checkpoints say of the model, made once. For the worker thread.
+  const std::shared_ptr<ModelText>& model_text() const { return model_text_; }
+  /// So that the first checkpoint is as quick as the others. Once the host can do it.
+  void PrepareModelText();
   /// Returns the one before.
   std::shared_ptr<Recorder> SetRecorder(std::shared_ptr<Recorder> recorder);
   /// Why the last one ended by itself, until somebody asked: it failed, or was full.
@@ -250,6 +255,7 @@ class Service {
   std::uint64_t run_ = 0;
   std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;
   std::multimap<std::uint64_t, std::function<void()>> after_taken_;
+  const std::shared_ptr<ModelText> model_text_ = std::make_shared<ModelText>();
   Accepted accepted_;
   Parameters defaults_;
   std::shared_ptr<Recorder> recorder_;

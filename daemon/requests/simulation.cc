@@ -108,10 +108,12 @@ void LoadAndReset(Service& service, std::uint64_t seed, const std::string& name,
     RpcError error;
   };
   const auto loaded = std::make_shared<Loaded>();
-  const auto load = [loaded, name, config = service.config()] {
+  const auto load = [loaded, name, config = service.config(), text = service.model_text()] {
     try {
-      loaded->object =
-          std::make_shared<const ObjectModel>(LoadObject(name, config.search_path, config.load));
+      LoadedScenario model = config.control.session.model;
+      model.object = LoadObject(name, config.search_path, config.load);
+      text->Of(model);
+      loaded->object = std::make_shared<const ObjectModel>(std::move(model.object));
     } catch (const std::exception& e) {
       loaded->error = {ErrorCode::kIo, e.what(), "correct the model", "object", {}};
     }

@@ -35,6 +35,7 @@ Server::Server(ServiceConfig config, Limits limits, ListenSocket* listener)
   control_output_.assign(output);
   acceptor_.assign(asio::local::stream_protocol(), listener_->Release());
   acceptor_.non_blocking(true);
+  service_.PrepareModelText();
 }
 
 Server::~Server() {

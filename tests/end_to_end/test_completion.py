@@ -75,6 +75,7 @@ class Names(DaemonCase):
         deadline = time.monotonic() + HANG_S
         for words, wanted in [(["checkpoint", "restore", ""], "held"), (["job", "wait", ""], "1"), (["job", "show", ""], "1"),
                               (["replay", "t"], "turn.mcap"), (["export", ""], "turn.mcap"), (["video", ""], "turn.mcap"),
+                              (["plot", "quality", ""], "turn.mcap"), (["plot", "quality", "--no"], "--no-title"),
                               (["experiment", "exploration", "--finger", "ri"], "ring")]:
             with self.subTest(words):
                 while wanted not in (offered := self.offered(*words, REGRASP_SOCKET=str(self.socket))):

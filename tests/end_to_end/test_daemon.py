@@ -195,6 +195,13 @@ class Session(DaemonCase):
         self.assertTrue(record.endswith("/" + event["incident"]))
         file = self.dir / "why.png"
         self.expect(0, "plot", "incident", "-o", file)
+        titled, untitled, as_before = (self.dir / name for name in ("titled.svg", "untitled.svg", "as-before.svg"))
+        self.expect(0, "plot", "quality", "-o", titled)
+        self.expect(0, "plot", "quality", "--no-title", "-o", untitled)
+        self.expect(0, "plot", "quality", "--title=false", "-o", as_before)
+        self.assertIn("Manipulability and grasp stability", titled.read_text())
+        self.assertNotIn("Manipulability and grasp stability", untitled.read_text())
+        self.assertEqual(as_before.read_text(), untitled.read_text())
         self.assertTrue(file.read_bytes().startswith(PNG))
         self.assertEqual(file.read_bytes(), pathlib.Path(record).with_suffix(".png").read_bytes())
 

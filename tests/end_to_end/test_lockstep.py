@@ -45,6 +45,27 @@ class Lockstep(DaemonCase):
         self.expect(0, "up", "--speed", "max", "--seed", "1", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
         self.assertEqual(self.typed(), first)
 
+    def test_readme_prints_these_figures(self):
+        """Elsewhere the same words with other figures: a compiler or a mathematical library may round otherwise."""
+        page = (SOURCE / "README.md").read_text()
+        lines = re.search(r"^\$ regrasp up .*?(?=^```)", page, re.M | re.S)[0].splitlines()
+        self.assertEqual([line[len("$ regrasp "):] for line in lines if line.startswith("$")][1:], LINES)
+        printed = [line for line in lines if not line.startswith("$")]
+        here = [line for words in LINES for line in self.regrasp(*words.split()).stdout.splitlines()]
+        shape = lambda line: re.sub(r"-?\d+(\.\d+)?", "0", line)  # pylint: disable=unnecessary-lambda-assignment
+        compare = str if self.rounds_as_the_machine_of_readme() else shape
+        rest = iter(compare(line) for line in here)  # README leaves lines out
+        for line in printed:
+            self.assertTrue(compare(line) in rest, "README.md prints\n  {}\nbut its lines give\n{}\nIf the change is meant, put this there.".format(
+                line, "\n".join(here)))
+        self.assertGreater(len(printed), 6)
+
+    def rounds_as_the_machine_of_readme(self):
+        """GCC 12, and glibc's functions for processors with fused multiply-add."""
+        with open(self.json("checkpoint", "save", "here")["path"], encoding="utf-8") as file:
+            build = json.loads(file.readline())["build"]
+        return " gcc-12." in build and "fma" in pathlib.Path("/proc/cpuinfo").read_text().split()
+
     def test_the_python_module_gives_the_same_figures(self):
         for line in LINES[:1]:
             self.expect(0, *line.split())

@@ -106,7 +106,12 @@ class InsideTheHand(DaemonCase):
         done = self.expect(0, "up", "--speed", "max", "--models-dir", self.dir, "--object", "big")
         self.assertRegex(done.stdout, r"warning: the object begins \d+\.\d mm inside the link \w+; grasp will refuse: regrasp hand new HAND --object FILE")
         self.assertEqual(len(self.json("status")["warnings"]), 1)
-        self.assertRegex(self.expect(1, "grasp", "--wait").stdout, "inside the link .*; regrasp hand new HAND --object FILE")
+        failed = self.expect(1, "--json", "grasp", "--wait").stdout
+        self.assertRegex(json.loads(failed)["error"], "inside the link .*; regrasp hand new HAND --object FILE -o NAME.toml fits a hand to it$")
+        # An event holds less: whole words, and an ellipsis.
+        (told,) = [event["text"] for event in self.json("events")["events"] if event["kind"] == "refused"]
+        self.assertRegex(told, r"^refused: the object begins .* …$")
+        self.assertIn(told.removeprefix("refused: ").removesuffix("…"), json.loads(failed)["error"])
         self.assertEqual(self.json("reset", "--object", "sphere")["warnings"], [])
         self.assertIn("inside the link", self.expect(0, "reset", "--object", "big").stdout)
         self.expect(0, "reset", "--object", "sphere")

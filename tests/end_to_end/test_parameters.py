@@ -47,7 +47,7 @@ class Parameters(DaemonCase):
                             ("exploration.lambda", "0.123456789012345678")):
             self.expect(0, "param", "set", name, value)
         before = self.changed()
-        self.assertIn("11 parameters", self.expect(0, "param", "save", file).stdout)
+        self.assertIn("11 parameters that differ from their defaults", self.expect(0, "param", "save", file).stdout)
         self.assertEqual(self.expect(0, "param", "save", "-").stdout, file.read_text())
         self.expect(0, "param", "reset")
         self.expect(0, "param", "load", file)
@@ -56,6 +56,9 @@ class Parameters(DaemonCase):
         self.assertIn("is fine", self.expect(0, "config", "check", file).stdout)
         everything = self.dir / "all.toml"
         self.expect(0, "param", "save", "--all", everything)
+        self.expect(0, "param", "reset")
+        self.expect(0, "param", "set", "gait.hop", "false")
+        self.assertIn("1 parameter that differs from its default", self.expect(0, "param", "save", self.dir / "one.toml").stdout)
         self.expect(0, "param", "reset")
         self.expect(0, "param", "load", everything)
         self.assertEqual(self.changed(), before)

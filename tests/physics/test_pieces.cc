@@ -5,7 +5,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/hand/kinematics.h"
 #include "core/hand/object_loader.h"
+#include "core/world/start_overlap.h"
 #include "core/world/true_surface.h"
 #include "tests/physics/session_run.h"
 
@@ -34,6 +36,46 @@ ObjectModel Balls(const std::vector<Ball>& balls) {
   const ObjectModel object = LoadObjectUrdf(file, options);
   std::filesystem::remove(file);
   return object;
+}
+
+/// How far the links reach into the object, by its distance alone.
+StartOverlap OverlapByDistance(const HandModel& hand, const std::vector<Isometry3d>& X_WL,
+                               const ObjectModel& object, const Isometry3d& X_WO) {
+  const TrueSurface surface(object);
+  StartOverlap deepest;
+  for (std::size_t l = 0; l < hand.links.size(); ++l)
+    for (const Shape& shape : hand.links[l].shapes)
+      for (int k = 0; k <= 8 && shape.kind == Shape::Kind::kCapsule; ++k) {
+        const Vector3d p_L = shape.b_L + k / 8.0 * (shape.a_L - shape.b_L);
+        const double depth = shape.radius - surface.At(X_WO.inverse() * (X_WL[l] * p_L)).distance;
+        if (depth > deepest.depth) deepest = {static_cast<int>(l), depth};
+      }
+  return deepest;
+}
+
+TEST(Pieces, AStartInsideTheHandIsFoundAsDeepAsItIs) {
+  const LoadedScenario loaded = LoadScenario("shadow", "zoo_peanut_lying", ModelSearchPath());
+  HandModel hand = loaded.hand;
+  for (Link& link : hand.links)
+    std::erase_if(link.shapes, [](const Shape& s) { return s.kind == Shape::Kind::kBox; });
+  KinematicsData data;
+  ForwardKinematics(hand, loaded.scenario.q_preshape, &data);
+  const std::vector<Isometry3d> X_WL(
+      data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(hand.links.size()));
+  int inside = 0;
+  constexpr int kPlaces = 40;
+  for (int i = 0; i < kPlaces; ++i) {  // nearer and farther from one link after the other
+    Isometry3d X_WO = loaded.scenario.X_WO;
+    X_WO.translation() = X_WL[static_cast<std::size_t>(7 * i) % X_WL.size()].translation() +
+                         (0.01 + 0.004 * i) * Vector3d(std::cos(i), std::sin(i), 0.5);
+    const StartOverlap found = DeepestOverlap(hand, X_WL, loaded.object, X_WO);
+    const StartOverlap expected = OverlapByDistance(hand, X_WL, loaded.object, X_WO);
+    EXPECT_EQ(found.link, expected.link) << i;
+    EXPECT_NEAR(found.depth, expected.depth, 1e-12) << i;
+    inside += expected.link >= 0;
+  }
+  EXPECT_GT(inside, 5);
+  EXPECT_LT(inside, kPlaces);
 }
 
 TEST(Pieces, DistanceIsThatOfTheNearestPiece) {

@@ -63,6 +63,19 @@ TEST(SurfaceMesh, PiercingSegmentHasNoDistance) {
   EXPECT_NEAR(closest->face_normal_O.z(), 1, 1e-12);
 }
 
+TEST(SurfaceMesh, IsSharedByAllThatUseTheSameMesh) {
+  const auto mesh = SurfaceMesh::Shared(kCorners, kFaces);
+  EXPECT_EQ(SurfaceMesh::Shared(std::vector(kCorners), kFaces), mesh);
+  std::vector<Vector3d> moved = kCorners;
+  moved[6].x() = std::nextafter(moved[6].x(), 1.0);
+  const auto other = SurfaceMesh::Shared(moved, kFaces);
+  EXPECT_NE(other, mesh);
+  const std::vector<Eigen::Vector3i> fewer(kFaces.begin(), kFaces.end() - 1);
+  EXPECT_NE(SurfaceMesh::Shared(moved, fewer), other);
+  const Vector3d p(0.4, 0.2, 3);  // the first lives on
+  EXPECT_EQ(mesh->ClosestToSegment(p, p, 10)->distance, 2.5);
+}
+
 TEST(SurfaceMesh, FartherThanAskedIsNothing) {
   const SurfaceMesh mesh(kCorners, kFaces);
   EXPECT_FALSE(mesh.ClosestToSegment({0, 0, 1}, {0, 0, 2}, 0.499));

@@ -24,9 +24,11 @@ class Here final : public Host {
     finish();
     return true;
   }
-  std::size_t clients() const override { return 1; }
+  std::size_t clients() const override { return 1 + others; }
   void Shutdown() override {}
   bool activated() const override { return false; }
+
+  std::size_t others = 0;
 };
 
 class Nobody final : public Client {
@@ -136,6 +138,20 @@ TEST_F(Topics, AreWrittenOncePerFrame) {
     const char* text = service.Topic(topic).fields.data();
     EXPECT_EQ(service.Topic(topic).fields.data(), text) << topic;
   }
+}
+
+// Its text is put together anew for each who asks, from pieces that are not.
+TEST_F(Topics, StatusIsWrittenOncePerFrameButForTimesAndCounts) {
+  const std::string told = Told("status");
+  host.others = 6;
+  auto& reason = const_cast<ServiceConfig&>(service.config()).stepper_reason;
+  reason = "nobody was told";
+  EXPECT_NE(Told("status"), told);  // the number of clients
+  EXPECT_EQ(Told("status").find(reason), std::string::npos);
+  host.others = 0;
+  EXPECT_EQ(Told("status"), told);
+  service.ForgetTopics();
+  EXPECT_NE(Told("status").find(reason), std::string::npos);
 }
 
 TEST_F(Topics, StatusHasTheSameMembersInTheSameOrderAsEver) {

@@ -212,9 +212,8 @@ class Methods:
             .pdf, .svg; left out: NAME.png, or NAME-2.png ... where that is there.
         overwrite: replace a picture of this name; otherwise that is an error; left out: false.
         last_s: only the last so many seconds [s]; 0.1 to 600; left out: everything kept.
-        size_m: printed width; text of at least 7 pt at any width, in an incident from 165 mm on [m]; 0.05 to 1;
-            left out: for a screen.
-        title: whether the picture has its title and its line of facts; left out: true.
+        size_m: printed width, of text of at least 7 pt [m]; 0.05 to 1; left out: for a screen.
+        title: the picture's title and its line of facts; left out: true.
         font_size_pt: with size: no text on paper is smaller [pt]; 4 to 24; left out: 7.
         dpi: with size: pixels per inch of a .png or .jpg; 50 to 1200; left out: 1600 pixels wide.
         Returns file (name), path, bytes, tick.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -39,6 +40,53 @@ TEST(JournalText, AConfigurationGivesTheSameSession) {
     }
     EXPECT_EQ(original.StateHash(), copy.StateHash()) << object;
   }
+}
+
+TEST(JournalText, AKnownModelIsNeitherWrittenNorReadAnew) {
+  const SessionConfig egg = Config("egg"), sphere = Config("sphere");
+  ModelText known;
+  for (const SessionConfig* config : {&egg, &egg, &sphere, &egg}) {
+    const std::string text = ConfigText(*config, 0, &known);
+    EXPECT_EQ(text, ConfigText(*config, 0));
+    ASSERT_TRUE(known.Without(text));
+    EXPECT_EQ(ConfigText(ParseConfig(text, &known).config, 0), text);
+  }
+  // Of another model by one bit, in the middle.
+  SessionConfig other = egg;
+  double& x = other.model.object.vertices_O[other.model.object.vertices_O.size() / 2].x();
+  x = std::nextafter(x, 1.0);
+  const std::string text = ConfigText(other, 0);
+  EXPECT_FALSE(known.Without(text));
+  EXPECT_EQ(ConfigText(ParseConfig(text, &known).config, 0), text);
+  EXPECT_TRUE(known.Without(text));
+  EXPECT_EQ(ConfigText(egg, 0, &known), ConfigText(egg, 0));
+}
+
+TEST(JournalText, WhatOnlyLooksLikeAKnownModelIsRefused) {
+  const SessionConfig sphere = Config("sphere");
+  ModelText known;
+  const std::string text = ConfigText(sphere, 0, &known), model = known.Of(sphere.model);
+  // In a text, in an object that does not end, after what is no JSON.
+  for (const char* before : {R"({"a":"b)", R"({"format":"regrasp-run/2","a":{"b":1)", R"({"a":})"})
+    EXPECT_THROW(ParseConfig(before + (R"(,"model":)" + model) + "}", &known), JournalError)
+        << before;
+  // Known is not yet good: the parameters of the run do not fit it.
+  std::string spoilt = text;
+  const auto seed = spoilt.find(R"("seed":)");
+  spoilt.insert(seed + 7, "-");
+  EXPECT_THROW(ParseConfig(spoilt, &known), JournalError);
+}
+
+TEST(JournalText, HandsDifferByOneBit) {
+  const HandModel hand = Config("sphere").model.hand;
+  EXPECT_EQ(HandBytes(hand), HandBytes(HandModel(hand)));
+  HandModel other = hand;
+  double& mass = other.links.back().mass;
+  mass = std::nextafter(mass, 1.0);
+  EXPECT_NE(HandBytes(hand), HandBytes(other));
+  other = hand;
+  std::swap(other.fingers[0].name, other.fingers[1].name);
+  EXPECT_NE(HandBytes(hand), HandBytes(other));
 }
 
 // Until format 2 vertices and triangles were lists in a list.
