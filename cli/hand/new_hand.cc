@@ -169,17 +169,17 @@ class Maker {
     for (const double size : BallsFor(box_, 1e-3 * kLeastBall)) sizes_mm_.push_back(1e3 * size);
   }
 
-  /// With `out` fingers left out, while nothing good was found: one, the best choice of it; two,
-  /// the first that holds. `again`: other starts than before.
+  /// With `out` fingers left out, while nothing was found that holds: one, the best choice of it;
+  /// two, the first that holds. `again`: other starts than before.
   void Search(int out, double size_mm, int again) {
     const int n = all_.num_fingers();
-    if (best_.Good() || (out > 0 && n - out < 3)) return;
+    if (best_.Good() || (out > 0 && (best_.Holds() || n - out < 3))) return;
     search_.task.radius = 0.5e-3 * size_mm;
     GraspSearch search = search_;
     search.seed += static_cast<std::uint64_t>(again) << 32;
     for (int a = 0; a < n; ++a)
       for (int b = a; b < n; ++b) {
-        if (out == 2 && best_.Good()) return;
+        if (out == 2 && best_.Holds()) return;
         if (out == 0 ? a + b > 0 : (b == a) != (out == 1)) continue;
         without_ = out == 0 ? "" : " without " + all_.fingers[static_cast<std::size_t>(a)].name;
         if (out == 2) without_ += ", " + all_.fingers[static_cast<std::size_t>(b)].name;

@@ -46,7 +46,8 @@ struct Found {
   int inside = 0;  ///< of kStarts, in which the object begins inside a link
 
   bool any() const { return !model.hand.links.empty(); }
-  bool Good() const { return any() && trial.held && way.stuck < 0 && inside == 0; }
+  bool Holds() const { return any() && trial.held && way.stuck < 0; }
+  bool Good() const { return Holds() && inside == 0; }
   /// With kTrials seeds from this one on, as long as it holds; `trial` tells the worst.
   void Try(std::uint64_t seed);
   bool Better(const Found& other) const;

@@ -158,7 +158,8 @@ class Hand(Case):
         self.expect(0, "up", "--hand", self.dir / "three.toml", "--speed", "max", "--paused")
         self.expect(0, "grasp")
         self.expect(0, "step", 9000, "--wait")
-        turn = self.json("rotate", "--angle", "15")["id"]
+        self.expect(0, "rotate", "--angle", "15")
+        turn = self.json("job", "list")["jobs"][-1]["id"]
         self.expect(0, "step", 100, "--wait")
         error = self.refused(5, "param", "set", "gait.step_rad", "0.05")
         self.assertIn("gait.step_rad cannot be lowered while a hand of two or three fingers turns", error)
