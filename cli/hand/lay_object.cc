@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/common/box_corners.h"
@@ -13,6 +14,7 @@
 namespace regrasp::hand {
 namespace {
 
+constexpr double kShift = 5e-3;      // of the object, where it lies too near to a link [m]
 constexpr double kSame = 1e-3;       // places of corners that differ by less are alike [m]
 constexpr double kCorners = 1.2;     // a ball that reaches towards the corners
 constexpr double kOtherBall = 5e-3;  // balls that differ by less are one [m]
@@ -77,6 +79,33 @@ Matrix3d AxesOf(const Matrix3d& inertia) {
   return axes;
 }
 
+/// The hand's links, where the object has been moved by so much.
+struct Posed {
+  std::vector<Isometry3d> X_WL;
+  Vector3d moved;
+};
+
+Posed PosedAt(const HandModel& hand, const JointVector& q, const Vector3d& moved) {
+  KinematicsData data;
+  ForwardKinematics(hand, q, &data);
+  const auto end = data.X_WL.begin() + static_cast<std::ptrdiff_t>(hand.links.size());
+  return {{data.X_WL.begin(), end}, moved};
+}
+
+/// Counts the starts in which the object begins inside a link; false where it does in the first,
+/// which is the preshape itself.
+bool Judge(const LoadedScenario& model, const std::vector<Posed>& hands, Way* way) {
+  for (std::size_t k = 0; k < hands.size(); ++k) {
+    Isometry3d X_WO = way->X_WO;
+    X_WO.translation() += hands[k].moved;
+    const double depth = DeepestOverlap(model.hand, hands[k].X_WL, model.object, X_WO).depth;
+    if (k == 0 && depth > kStartOverlap) return false;
+    way->inside += depth > kStartOverlap;
+    way->depth = std::max(way->depth, depth);
+  }
+  return true;
+}
+
 }  // namespace
 
 ObjectBox BoxOf(const ObjectModel& object) {
@@ -115,24 +144,28 @@ std::vector<double> BallsFor(const ObjectBox& box, double least) {
   return balls;
 }
 
-std::vector<Isometry3d> WaysToLie(const LoadedScenario& model, const ObjectBox& box,
-                                  const Vector3d& p_WB) {
-  KinematicsData data;
-  ForwardKinematics(model.hand, model.scenario.q_preshape, &data);
-  const std::vector<Isometry3d> X_WL(
-      data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(model.hand.links.size()));
-  std::vector<std::pair<double, Isometry3d>> ways;
+std::vector<Way> WaysToLie(const LoadedScenario& model, const ObjectBox& box, const Vector3d& p_WB,
+                           const std::vector<Start>& starts) {
+  std::vector<Posed> hands = {PosedAt(model.hand, model.scenario.q_preshape, Vector3d::Zero())};
+  for (const Start& start : starts) hands.push_back(PosedAt(model.hand, start.q, start.moved));
+  std::vector<Way> ways;
   for (const Matrix3d& R_WB : box.turns) {
-    Isometry3d X_WO = Isometry3d::Identity();
-    X_WO.linear() = R_WB * box.R_OB.transpose();
-    X_WO.translation() = p_WB - X_WO.linear() * box.p_OB;
-    const double depth = DeepestOverlap(model.hand, X_WL, model.object, X_WO).depth;
-    if (depth <= kStartOverlap) ways.emplace_back(depth, X_WO);
+    std::optional<Way> best;
+    for (int shift = 0; shift < 7; ++shift) {  // not at all, then along each axis
+      if (best && best->inside == 0) break;
+      Vector3d p = p_WB;
+      if (shift > 0) p[(shift - 1) % 3] += shift > 3 ? -kShift : kShift;
+      Way way;
+      way.X_WO.linear() = R_WB * box.R_OB.transpose();
+      way.X_WO.translation() = p - way.X_WO.linear() * box.p_OB;
+      if (!Judge(model, hands, &way)) continue;
+      if (!best || way.inside < best->inside) best = way;
+    }
+    if (best) ways.push_back(*best);
   }
-  std::ranges::stable_sort(ways, {}, [](const auto& way) { return way.first; });
-  std::vector<Isometry3d> sorted;
-  for (const auto& way : ways) sorted.push_back(way.second);
-  return sorted;
+  std::ranges::stable_sort(ways, {},
+                           [](const Way& way) { return std::pair(way.inside, way.depth); });
+  return ways;
 }
 
 }  // namespace regrasp::hand

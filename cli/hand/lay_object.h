@@ -26,9 +26,23 @@ ObjectBox BoxOf(const ObjectModel& object);
 /// of its two smaller extents, somewhat more, each of the two; those that differ.
 std::vector<double> BallsFor(const ObjectBox& box, double least);
 
-/// Poses X_WO with the box's middle at `p_WB` and its axes along the hand's, that begin no deeper
-/// in a link of the preshape than `grasp` allows; those that are deepest in the fingers' way last.
-std::vector<Isometry3d> WaysToLie(const LoadedScenario& model, const ObjectBox& box,
-                                  const Vector3d& p_WB);
+/// Where a run may begin, by its seed: the preshape, and how far the object is from its place [m].
+struct Start {
+  JointVector q;
+  Vector3d moved = Vector3d::Zero();
+};
+
+struct Way {
+  Isometry3d X_WO = Isometry3d::Identity();
+  int inside = 0;    ///< starts in which the object begins inside a link
+  double depth = 0;  ///< largest, of every start [m]
+};
+
+/// Ways to lie with the box's axes along the hand's and its middle at `p_WB` or 5 mm beside it,
+/// where that is clearer of links: those that begin no deeper in a link of the preshape than
+/// `grasp` allows. First those that begin inside a link in the fewest of `starts`, then those that
+/// are deepest in the fingers' way last.
+std::vector<Way> WaysToLie(const LoadedScenario& model, const ObjectBox& box, const Vector3d& p_WB,
+                           const std::vector<Start>& starts);
 
 }  // namespace regrasp::hand

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small hands use
-constexpr int kTrials = 3;          // seeds with which an object that is no ball must be held
+constexpr int kSearches = 3;        // for a hand of which no finger can be left out
 constexpr std::size_t kWays = 8;    // to lay it into a grasp, that are tried
 constexpr double kLeastBall = 30;   // that stands for it [mm]
 
@@ -89,8 +89,11 @@ class Maker {
     CheckOutput();
     Read();
     if (!object_.empty()) ReadObject();
-    for (int out = 0; out <= 2; ++out)
-      for (const double size_mm : sizes_mm_) Search(out, size_mm);
+    const int searches = all_.num_fingers() <= kFewFingers ? kSearches : 1;
+    for (int k = 0; k < searches; ++k)
+      for (const double size_mm : sizes_mm_) Search(0, size_mm, k);
+    for (int out = 1; out <= 2; ++out)
+      for (const double size_mm : sizes_mm_) Search(out, size_mm, 0);
     hand_ = best_.any() ? best_.model.hand : all_;
     for (const HandLayout::Finger& finger : whole_.fingers)
       if (std::ranges::none_of(guess_.layout.fingers,
@@ -166,22 +169,24 @@ class Maker {
     for (const double size : BallsFor(box_, 1e-3 * kLeastBall)) sizes_mm_.push_back(1e3 * size);
   }
 
-  /// With `out` fingers left out, while nothing good was found: one, the best choice of it; two,
-  /// the first that holds.
-  void Search(int out, double size_mm) {
+  /// With `out` fingers left out, while nothing was found that holds: one, the best choice of it;
+  /// two, the first that holds. `again`: other starts than before.
+  void Search(int out, double size_mm, int again) {
     const int n = all_.num_fingers();
-    if (best_.Good() || (out > 0 && n - out < 3)) return;
+    if (best_.Good() || (out > 0 && (best_.Holds() || n - out < 3))) return;
     search_.task.radius = 0.5e-3 * size_mm;
+    GraspSearch search = search_;
+    search.seed += static_cast<std::uint64_t>(again) << 32;
     for (int a = 0; a < n; ++a)
       for (int b = a; b < n; ++b) {
-        if (out == 2 && best_.Good()) return;
+        if (out == 2 && best_.Holds()) return;
         if (out == 0 ? a + b > 0 : (b == a) != (out == 1)) continue;
         without_ = out == 0 ? "" : " without " + all_.fingers[static_cast<std::size_t>(a)].name;
         if (out == 2) without_ += ", " + all_.fingers[static_cast<std::size_t>(b)].name;
         const HandLayout layout = Without(all_, whole_, out == 0 ? FingerSet{} : FingerSet{a, b});
         hand_ = LoadHand(urdf_, layout, options_.load());
         hand_.name = out_.stem().string();
-        const Found found = Choose(FindGrasps(hand_, search_), size_mm);
+        const Found found = Choose(FindGrasps(hand_, search), size_mm);
         if (!found.Better(best_)) continue;
         best_ = found;
         size_mm_ = size_mm;
@@ -245,7 +250,7 @@ class Maker {
         TryWays(found, &best);
         continue;
       }
-      found.Try(search_.seed, 1);
+      found.Try(search_.seed);
       if (found.Better(best)) best = found;
     }
     return best;
@@ -253,13 +258,15 @@ class Maker {
 
   /// The object as it may lie in a grasp.
   void TryWays(Found found, Found* best) {
-    const std::vector<Isometry3d> ways = WaysToLie(found.model, box_, found.grasp.p_WO);
+    const std::vector<Way> ways =
+        WaysToLie(found.model, box_, found.grasp.p_WO, Starts(found.model, search_.seed));
     for (std::size_t k = 0; k < std::min(ways.size(), kWays); ++k) {
       progress_.Show("laying the object in" + without_ + ", trying it",
                      static_cast<double>(k) / kWays);
-      found.model.scenario.X_WO = ways[k];
+      found.model.scenario.X_WO = ways[k].X_WO;
+      found.inside = ways[k].inside;
       ++ways_;
-      found.Try(search_.seed, kTrials);
+      found.Try(search_.seed);
       if (found.Better(*best)) *best = found;
     }
   }
@@ -298,7 +305,6 @@ class Maker {
     sheet.best = best_;
     sheet.ball = object_.empty();
     sheet.ways = ways_;
-    sheet.seeds = object_.empty() ? 1 : kTrials;
     return sheet;
   }
 

@@ -23,9 +23,8 @@ std::string Sheet::ScoreLine() const {
 
 std::string Sheet::Tried() const {
   if (!best.trial.held) return "tried: does not hold";
-  return fmt::format("tried{}: holds {} for {:g} s, moved {:.2f} mm{}",
-                     ball ? "" : fmt::format(" with {} seeds", seeds), best.model.scenario.object,
-                     kHold, 1e3 * best.trial.moved_m, ball ? "" : " at most");
+  return fmt::format("tried with {} seeds: holds {} for {:g} s, moved {:.2f} mm at most", kTrials,
+                     best.model.scenario.object, kHold, 1e3 * best.trial.moved_m);
 }
 
 std::vector<std::string> Sheet::Remarks() const {
@@ -57,10 +56,11 @@ std::vector<std::string> Sheet::Remarks() const {
                     best.model.hand.fingers[static_cast<std::size_t>(best.way.stuck)].name));
   if (!best.trial.held)
     remarks.push_back(
-        ball ? fmt::format("tried once, it did not hold: {}", best.trial.end)
+        ball ? fmt::format("held with {} of {} seeds, then: {}", best.trial.seeds, kTrials,
+                           best.trial.end)
              : fmt::format("{} ways to lay {} in were tried with up to {} seeds, and none held; "
                            "the one written: {}",
-                           ways, best.model.scenario.object, seeds, best.trial.end));
+                           ways, best.model.scenario.object, kTrials, best.trial.end));
   for (const ModelWarning& warning : report.warnings) remarks.push_back(warning.Line());
   return remarks;
 }

@@ -23,7 +23,6 @@ struct Sheet {
   Found best;
   bool ball = true;  ///< is what is held; otherwise an object that is laid into the grasp
   int ways = 0;      ///< to lay it in, that were tried
-  int seeds = 1;     ///< with which it must be held
 
   /// A comment for the scenario: what the grasp is worth.
   std::string ScoreLine() const;

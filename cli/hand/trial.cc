@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "core/session/session.h"
+#include "core/session/start.h"
 
 namespace regrasp::hand {
 
@@ -35,31 +36,47 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
        session.tick() < end && session.state() == SessionState::kHolding;)
     session.Tick();
   trial.held = session.state() == SessionState::kHolding;
+  trial.seeds = trial.held ? 1 : 0;
   trial.end = trial.held ? "" : "it dropped the object";
   trial.moved_m = (session.truth().p_WO - p).norm();
   Frame frame;
   session.Snapshot(&frame, false);
-  trial.margin_n = 1e9;
-  for (int f = 0; f < model.hand.num_fingers(); ++f)
+  const bool none_leaves = model.hand.num_fingers() <= kFewFingers;
+  trial.margin_n = none_leaves ? frame.stability.load_margin : 1e9;
+  for (int f = 0; !none_leaves && f < model.hand.num_fingers(); ++f)
     trial.margin_n =
         std::min(trial.margin_n, frame.fingers[static_cast<std::size_t>(f)].load_margin_without);
   return trial;
 }
 
-void Found::Try(std::uint64_t seed, int times) {
+std::vector<Start> Starts(const LoadedScenario& model, std::uint64_t seed) {
+  SessionConfig config;
+  config.model = model;
+  config.parameters = DefaultParameters(model);
+  std::vector<Start> starts;
+  for (unsigned k = 0; k < kStarts; ++k) {
+    config.seed = seed + k;
+    const StartPosture start = MakeStart(config);
+    starts.push_back({start.q_open, start.X_WO.translation() - model.scenario.X_WO.translation()});
+  }
+  return starts;
+}
+
+void Found::Try(std::uint64_t seed) {
   choice = ChooseStepper(model, {});
   trial = TryToHold(model, choice.stepper, seed, kHold);
-  for (int k = 1; k < times && trial.held; ++k) {
+  for (int k = 1; k < kTrials && trial.held; ++k) {
     const HoldTrial next = TryToHold(model, choice.stepper, seed + static_cast<unsigned>(k), kHold);
     trial = {next.held, next.end, std::max(trial.moved_m, next.moved_m),
-             std::min(trial.margin_n, next.margin_n)};
+             std::min(trial.margin_n, next.margin_n), trial.seeds + next.seeds};
   }
 }
 
 bool Found::Better(const Found& other) const {
   if (!any() || !other.any()) return any();
   const auto rank = [](const Found& f) {
-    return std::tuple(f.Good(), f.trial.held, f.trial.held ? f.trial.margin_n : 0.0);
+    return std::tuple(f.Good(), f.trial.held, -f.inside, f.trial.seeds,
+                      f.trial.held ? f.trial.margin_n : 0.0);
   };
   return rank(*this) > rank(other);
 }

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "cli/hand/lay_object.h"
 #include "core/hand/scenario.h"
 #include "core/posture/ball_grasp.h"
 #include "core/posture/way_in.h"
@@ -17,7 +19,9 @@ struct HoldTrial {
   bool held = false;
   std::string end;      ///< why not
   double moved_m = 0;   ///< of the object while it was held
-  double margin_n = 0;  ///< least load margin without a finger, as the controller sees it
+  double margin_n = 0;  ///< least load margin without a finger, as the controller sees it; of a
+                        ///< hand whose fingers cannot leave, with all
+  int seeds = 0;        ///< with which it held
 };
 
 /// Grasps the scenario's object at noise `paper` and holds it for `seconds`.
@@ -25,6 +29,12 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
                     double seconds);
 
 inline constexpr double kHold = 5;  ///< [s] of a trial of Found
+inline constexpr int kTrials = 6;   ///< seeds with which Found must hold
+
+inline constexpr int kStarts = 16;  ///< seeds whose starts an object must be clear of
+
+/// How the runs with kStarts seeds from this one on begin.
+std::vector<Start> Starts(const LoadedScenario& model, std::uint64_t seed);
 
 /// A grasp with its way in, in a scenario, and how it went where that was tried.
 struct Found {
@@ -33,11 +43,13 @@ struct Found {
   LoadedScenario model;
   HoldTrial trial;
   StepperChoice choice;
+  int inside = 0;  ///< of kStarts, in which the object begins inside a link
 
   bool any() const { return !model.hand.links.empty(); }
-  bool Good() const { return any() && trial.held && way.stuck < 0; }
-  /// With `times` seeds from this one on, as long as it holds; `trial` tells the worst.
-  void Try(std::uint64_t seed, int times);
+  bool Holds() const { return any() && trial.held && way.stuck < 0; }
+  bool Good() const { return Holds() && inside == 0; }
+  /// With kTrials seeds from this one on, as long as it holds; `trial` tells the worst.
+  void Try(std::uint64_t seed);
   bool Better(const Found& other) const;
 };
 

@@ -131,6 +131,8 @@ class HandReader {
   /// checked when it is complete: frames without mass are common.
   void AddBody(const UrdfLink& in, const Isometry3d& X_LG, Link* link) {
     if (!in.inertial) return;
+    if (in.second_inertial_line > 0)
+      Warn(in.second_inertial_line, LinkElement(in.name), "a second <inertial> is not read");
     const UrdfInertial& body = *in.inertial;
     if (body.mass < 0) {
       problems_.Add(body.line, "{}: <mass> = {:.6g}; must be > 0", LinkElement(in.name), body.mass);
@@ -219,13 +221,8 @@ class HandReader {
     for (std::size_t l = 1; l < hand_.links.size(); ++l) {
       Link& link = hand_.links[l];
       const int line = line_of_link_[l];
-      std::string why;
-      if (!(link.mass > 0))
-        why = LinkAt(file_.FindLink(link.name)).inertial
-                  ? fmt::format("<mass> = {:g}; must be > 0 for a link that moves", link.mass)
-                  : "has no <inertial>; a link that moves needs mass > 0";
-      else
-        why = WhyNoInertia(link.I_LCom);
+      const bool told = LinkAt(file_.FindLink(link.name)).inertial.has_value();
+      const std::string why = WhyNoBody(link, told);
       if (why.empty()) continue;
       const std::string element = LinkElement(link.name);
       if (!options_.inertia_from_shape) {

@@ -1,8 +1,29 @@
 #include "core/hand/link_body.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "core/hand/solid.h"
 
 namespace regrasp {
+namespace {
+
+Eigen::AlignedBox3d BoxOf(const Shape& shape) {
+  Eigen::AlignedBox3d box;
+  if (shape.kind == Shape::Kind::kCapsule) {
+    const Vector3d r = Vector3d::Constant(shape.radius);
+    for (const Vector3d& end : {shape.a_L, shape.b_L})
+      box.extend(Eigen::AlignedBox3d(Vector3d(end - r), Vector3d(end + r)));
+  } else {
+    const Vector3d half = shape.X_LB.linear().cwiseAbs() * shape.half_extents;
+    const Vector3d middle = shape.X_LB.translation();
+    box.extend(Eigen::AlignedBox3d(Vector3d(middle - half), Vector3d(middle + half)));
+  }
+  return box;
+}
+
+}  // namespace
 
 void AddBodyTo(Link* link, const UrdfInertial& body, const Isometry3d& X_LG) {
   const double total = link->mass + body.mass;
@@ -15,6 +36,22 @@ void AddBodyTo(Link* link, const UrdfInertial& body, const Isometry3d& X_LG) {
                   X_LG.linear() * I * X_LG.linear().transpose();
   link->mass = total;
   link->p_LCom = com;
+}
+
+std::string WhyNoBody(const Link& link, bool told) {
+  if (!(link.mass > 0))
+    return told ? fmt::format("<mass> = {:g}; must be > 0 for a link that moves", link.mass)
+                : "has no <inertial>; a link that moves needs mass > 0";
+  if (const std::string why = WhyNoInertia(link.I_LCom); !why.empty()) return why;
+  if (link.shapes.empty()) return "";
+  Eigen::AlignedBox3d box(Vector3d::Zero());
+  for (const Shape& shape : link.shapes) box.extend(BoxOf(shape));
+  const double off = std::sqrt(box.squaredExteriorDistance(link.p_LCom));
+  if (off <= box.diagonal().norm()) return "";
+  return fmt::format(
+      "the centre of mass ({:.4g}, {:.4g}, {:.4g}) m is {:.0f} mm outside its "
+      "shapes, which are {:.0f} mm across",
+      link.p_LCom.x(), link.p_LCom.y(), link.p_LCom.z(), 1e3 * off, 1e3 * box.diagonal().norm());
 }
 
 void InventBody(Link* link) {

@@ -2,6 +2,8 @@
 
 /// Mass, centre and inertia of a link that is put together from bodies, or has none.
 
+#include <string>
+
 #include "core/hand/hand_model.h"
 #include "core/hand/urdf_file.h"
 
@@ -10,6 +12,11 @@ namespace regrasp {
 /// Adds a body that is fixed to the link at X_LG. Whether the sum can be a body is for later:
 /// frames without mass are common.
 void AddBodyTo(Link* link, const UrdfInertial& body, const Isometry3d& X_LG);
+
+/// Why a link that moves cannot be like that; empty where it can: no mass, an inertia of no body,
+/// or a centre of mass farther from its shapes and its joint than they are large. `told`: the file
+/// gives it a body.
+std::string WhyNoBody(const Link& link, bool told);
 
 /// Mass (where there is none), centre and inertia of a homogeneous link of its shape.
 void InventBody(Link* link);

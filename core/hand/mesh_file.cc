@@ -19,9 +19,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <system_error>
+
+#include "core/hand/ply_file.h"
 
 namespace regrasp {
 namespace {
@@ -59,30 +62,66 @@ void SendError(int out, const std::string& text) {
   Send(out, text.data(), header.text);
 }
 
-void SendScene(int out, const aiScene& scene) {
+/// A mesh where a node of the scene has it.
+struct Placed {
+  const aiMesh* mesh;
+  aiMatrix4x4 X;
+};
+
+/// Every mesh of the scene, by material and then as the nodes stand. An instance costs nothing to
+/// write: from `most` vertices on they are only counted on, in the header.
+std::vector<Placed> PlacedMeshes(const aiScene& scene, std::uint64_t most) {
+  struct Open {
+    const aiNode* node;
+    aiMatrix4x4 X;
+  };
+  std::vector<Placed> placed;
+  std::uint64_t vertices = 0;
+  std::vector<Open> open = {{scene.mRootNode, scene.mRootNode->mTransformation}};
+  while (!open.empty() && vertices <= most) {
+    const Open at = open.back();
+    open.pop_back();
+    for (unsigned m = 0; m < at.node->mNumMeshes && vertices <= most; ++m) {
+      placed.push_back({scene.mMeshes[at.node->mMeshes[m]], at.X});
+      vertices += placed.back().mesh->mNumVertices;
+    }
+    for (unsigned c = at.node->mNumChildren; c > 0; --c) {
+      const aiNode* child = at.node->mChildren[c - 1];
+      open.push_back({child, at.X * child->mTransformation});
+    }
+  }
+  std::ranges::stable_sort(placed, {}, [](const Placed& p) { return p.mesh->mMaterialIndex; });
+  return placed;
+}
+
+void SendScene(int out, const aiScene& scene, const MeshLimits& limits) {
+  const std::vector<Placed> placed = PlacedMeshes(scene, limits.vertices);
   Header header;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[m];
-    header.vertices += part.mNumVertices;
-    for (unsigned i = 0; i < part.mNumFaces; ++i)
-      header.triangles += part.mFaces[i].mNumIndices == 3;  // points and lines enclose nothing
+  for (const Placed& part : placed) {
+    header.vertices += part.mesh->mNumVertices;
+    for (unsigned i = 0; i < part.mesh->mNumFaces; ++i)  // points and lines enclose nothing
+      header.triangles += part.mesh->mFaces[i].mNumIndices == 3;
   }
   Send(out, &header, sizeof(header));
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[m];
+  std::vector<aiVector3D> moved;
+  for (const Placed& part : placed) {
     static_assert(sizeof(aiVector3D) == 3 * sizeof(float));
-    Send(out, part.mVertices, part.mNumVertices * sizeof(aiVector3D));
+    moved.assign(part.mesh->mVertices, part.mesh->mVertices + part.mesh->mNumVertices);
+    if (!part.X.IsIdentity())
+      for (aiVector3D& v : moved) v = part.X * v;
+    Send(out, moved.data(), moved.size() * sizeof(aiVector3D));
   }
   std::uint32_t first = 0;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[m];
-    for (unsigned i = 0; i < part.mNumFaces; ++i) {
-      if (part.mFaces[i].mNumIndices != 3) continue;
+  for (const Placed& part : placed) {
+    const bool mirrored = part.X.Determinant() < 0;
+    for (unsigned i = 0; i < part.mesh->mNumFaces; ++i) {
+      if (part.mesh->mFaces[i].mNumIndices != 3) continue;
       std::uint32_t corners[3];
-      for (int k = 0; k < 3; ++k) corners[k] = first + part.mFaces[i].mIndices[k];
+      for (int k = 0; k < 3; ++k) corners[k] = first + part.mesh->mFaces[i].mIndices[k];
+      if (mirrored) std::swap(corners[1], corners[2]);
       Send(out, corners, sizeof(corners));
     }
-    first += part.mNumVertices;
+    first += part.mesh->mNumVertices;
   }
 }
 
@@ -116,12 +155,11 @@ void LimitChild(const MeshLimits& limits) {
   try {
     Assimp::Importer importer;
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    const aiScene* scene = importer.ReadFile(
-        file, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_DropNormals);
-    if (scene == nullptr)
+    const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_DropNormals);
+    if (scene == nullptr || scene->mRootNode == nullptr)
       SendError(3, importer.GetErrorString());
     else
-      SendScene(3, *scene);
+      SendScene(3, *scene, limits);
   } catch (const std::bad_alloc&) {
     SendError(3, fmt::format("needs more than {} MiB of memory", limits.memory_bytes >> 20));
   } catch (const std::exception& error) {
@@ -199,7 +237,23 @@ std::vector<std::byte> Receive(const fs::path& file, int in, const MeshLimits& l
   return bytes;
 }
 
-void CheckFile(const fs::path& file, const MeshLimits& limits) {
+/// Why a file is no STL file; empty where it is one or may be: in words, it begins with "solid".
+std::string WhyNoStl(const fs::path& file, std::uint64_t size) {
+  std::array<char, 84> head{};
+  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  if (std::string_view(head.data(), 5) == "solid") return "";
+  if (size < head.size())
+    return fmt::format("{} bytes that do not begin with \"solid\" are no STL file", size);
+  std::uint32_t triangles = 0;
+  std::memcpy(&triangles, head.data() + 80, sizeof(triangles));
+  const std::uint64_t wanted = head.size() + 50 * std::uint64_t{triangles};
+  if (size == wanted) return "";
+  return fmt::format("a binary STL file of {} triangles has {} bytes; this one has {}", triangles,
+                     wanted, size);
+}
+
+/// The suffix, in lower case.
+std::string CheckFile(const fs::path& file, const MeshLimits& limits) {
   std::string suffix = file.extension().string();
   std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::ranges::find(kSuffixes, suffix) == kSuffixes.end())
@@ -211,6 +265,9 @@ void CheckFile(const fs::path& file, const MeshLimits& limits) {
   if (error || size > limits.file_bytes)
     Fail(file,
          fmt::format("{} bytes; allowed are at most {}", error ? 0 : size, limits.file_bytes));
+  const std::string no_stl = suffix == ".stl" ? WhyNoStl(file, size) : "";
+  if (!no_stl.empty()) Fail(file, no_stl);
+  return suffix;
 }
 
 }  // namespace
@@ -249,7 +306,7 @@ RawMesh DecodeMesh(const fs::path& file, std::span<const std::byte> bytes,
 }
 
 RawMesh ReadMeshFile(const fs::path& file, const MeshLimits& limits) {
-  CheckFile(file, limits);
+  if (CheckFile(file, limits) == ".ply") return ReadPly(file, limits);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
     Fail(file, fmt::format("cannot start the mesh reader: {}", std::strerror(errno)));

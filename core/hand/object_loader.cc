@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "core/hand/link_body.h"
 #include "core/hand/mesh.h"
 #include "core/hand/primitive_mesh.h"
 #include "core/hand/solid.h"
@@ -48,22 +50,23 @@ class ObjectReader {
     problems_.ThrowIfAny();
     const UrdfLink& root = file_.links[static_cast<std::size_t>(file_.root)];
     element_ = LinkElement(root.name);
+    std::optional<UrdfInertial> inertial = root.inertial;
     collisions_ = root.collisions;
+    if (file_.links.size() > 1) Merge(&inertial);
     Isometry3d X_OL = Isometry3d::Identity();
     X_OL.linear() = R_OL_;
     for (UrdfCollision& collision : collisions_) collision.X_LG = X_OL * collision.X_LG;
-    if (file_.links.size() > 1)
-      problems_.Add(file_.links[1].line, "an object has exactly one link; this file has {}",
-                    file_.links.size());
-    if (!root.inertial)
+    if (!inertial)
       problems_.Add(root.line, "{}: has no <inertial>", element_);
-    else if (!(root.inertial->mass > 0))
-      problems_.Add(root.inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_,
-                    root.inertial->mass);
+    else if (!(inertial->mass > 0))
+      problems_.Add(inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_, inertial->mass);
     if (collisions_.empty())
       problems_.Add(root.line, "{}: has no <collision>; an object has at least one", element_);
     problems_.ThrowIfAny();
-    inertial_ = *root.inertial;
+    if (root.second_inertial_line > 0 && report_)
+      report_->warnings.push_back({problems_.file(), root.second_inertial_line, element_,
+                                   "a second <inertial> is not read"});
+    inertial_ = *inertial;
     inertial_.X_LI = X_OL * inertial_.X_LI;
     object_.name = file_.name;
     ReadShape();
@@ -76,6 +79,40 @@ class ObjectReader {
   }
 
  private:
+  /// Makes one body of links that are fixed to each other, in the frame of the first.
+  void Merge(std::optional<UrdfInertial>* inertial) {
+    for (const UrdfJoint& joint : file_.joints)
+      if (joint.type != UrdfJoint::Type::kFixed)
+        problems_.Add(joint.line, "{}: type \"{}\": an object is one rigid body; allowed is fixed",
+                      JointElement(joint.name), joint.type_name.substr(0, 40));
+    Link sum;
+    std::optional<UrdfInertial> first;
+    const auto add = [&](const auto& self, int l, const Isometry3d& X) -> void {
+      const UrdfLink& link = file_.links[static_cast<std::size_t>(l)];
+      if (l != file_.root)
+        for (UrdfCollision collision : link.collisions) {
+          collision.X_LG = X * collision.X_LG;
+          collisions_.push_back(collision);
+        }
+      if (link.inertial && !(link.inertial->mass >= 0))
+        problems_.Add(link.inertial->line, "{}: <mass> = {:.6g}; must be >= 0",
+                      LinkElement(link.name), link.inertial->mass);
+      else if (link.inertial)
+        AddBodyTo(&sum, *link.inertial, X);
+      if (!first || !(first->mass > 0)) first = link.inertial ? link.inertial : first;
+      for (const int j : link.child_joints) {
+        const UrdfJoint& joint = file_.joints[static_cast<std::size_t>(j)];
+        self(self, joint.child, X * joint.X_PJ);
+      }
+    };
+    add(add, file_.root, Isometry3d::Identity());
+    *inertial = first;  // for its lines
+    if (!first) return;
+    (*inertial)->mass = sum.mass;
+    (*inertial)->inertia = sum.I_LCom;
+    (*inertial)->X_LI = Isometry3d(Eigen::Translation3d(sum.p_LCom));
+  }
+
   /// The shape, about the centre of mass.
   void ReadShape() {
     using Kind = UrdfGeometry::Kind;
@@ -158,11 +195,15 @@ class ObjectReader {
     const double radius = object_.bounding_radius;
     constexpr double kMin = 1e-3, kMax = 1;
     if (radius >= kMin && radius <= kMax) return;
+    constexpr double kSmall = 5e-3;  // in a hand: smaller in millimetres means centimetres
+    const bool centimetres = radius > kMax && radius / 1000 < kSmall && radius / 100 <= kMax;
     const bool millimetres = radius > kMax && radius / 1000 >= kMin && radius / 1000 <= kMax;
-    const char* fix = !millimetres ? ""
-                      : object_.kind == ObjectModel::Kind::kMesh
-                          ? "; if the file is in millimetres: <mesh scale=\"0.001 0.001 0.001\">"
-                          : "; lengths are in metres";
+    const char* fix =
+        !millimetres && !centimetres ? ""
+        : object_.kind == ObjectModel::Kind::kMesh
+            ? centimetres ? "; if the file is in centimetres: <mesh scale=\"0.01 0.01 0.01\">"
+                          : "; if the file is in millimetres: <mesh scale=\"0.001 0.001 0.001\">"
+            : "; lengths are in metres";
     problems_.Add(collisions_.front().geometry.line,
                   "{}: bounding radius [m] = {:.6g}; allowed {:g} .. {:g}{}", element_, radius,
                   kMin, kMax, fix);

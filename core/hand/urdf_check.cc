@@ -97,16 +97,12 @@ class Checker {
     const std::string name = NameOf(*node, &link_index_);
     const UrdfValues values(LinkElement(name), problems_);
     KeepOnly(node, {"inertial", "collision"});
-    int inertials = 0;
     for (XMLElement* child = node->FirstChildElement(); child != nullptr;
-         child = child->NextSiblingElement()) {
+         child = child->NextSiblingElement())
       if (child->Name() == std::string_view("collision"))
         CheckCollision(child, values);
-      else if (++inertials > 1)
-        values.Add(child->GetLineNum(), "a second <inertial>; allowed is one");
-      else
+      else  // a second is published, too: the first counts, as elsewhere, and the other is told
         CheckInertial(child, values);
-    }
     link_index_[name] = static_cast<int>(links_.size());
     links_.push_back({name, node->GetLineNum(), -1, {}});
   }

@@ -45,6 +45,7 @@ struct UrdfInertial {
 };
 
 struct UrdfLink {
+  int second_inertial_line = 0;  ///< of an <inertial> beside the one that is read; 0: none
   std::string name;
   int line = 0;
   std::optional<UrdfInertial> inertial;

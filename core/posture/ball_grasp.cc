@@ -15,6 +15,7 @@ constexpr double kClear = 0.005;       // wanted gap of links [m]
 constexpr double kPalmGap = 0.004;     // ... and so much more of the ball to the palm [m]
 constexpr double kClimbReach = 0.005;  // [m]
 constexpr double kFacing = 0.2;        // wanted cosine of a tip's axis to the ball
+constexpr double kPush = 0.75;         // wanted share of a tip's motion along its contact's normal
 constexpr double kMostOfMargins = 6, kMostOfClimb = 1.5;  // of the score
 
 void Clamp(const HandModel& hand, int joint, double* angle) {
@@ -206,6 +207,7 @@ void Judge(const HandModel& hand, const BallTask& task, double enough, BallGrasp
   c->clearance = Clearance(hand, data, c->p_WO, task.radius);
   c->room = RoomToLimits(hand, c->q);
   c->sigma = c->facing = 1e9;
+  c->push = 1;
   c->manipulability.clear();
   std::vector<GraspContact> contacts;
   bool dexterous = true;  // every finger has three joints
@@ -218,14 +220,16 @@ void Judge(const HandModel& hand, const BallTask& task, double enough, BallGrasp
     c->manipulability.push_back(J.cols() >= 3 ? Manipulability(J) : 0.0);
     c->facing = std::min(c->facing, TipAxis(hand, data, f).dot(to));
     dexterous = dexterous && J.cols() >= 3;
+    const auto values = Eigen::JacobiSVD<Eigen::Matrix3Xd>(Eigen::Matrix3Xd(J)).singularValues();
     if (J.cols() >= 3)
-      c->sigma = std::min(
-          c->sigma, Eigen::JacobiSVD<Eigen::Matrix3Xd>(Eigen::Matrix3Xd(J)).singularValues()[2]);
+      c->sigma = std::min(c->sigma, values[2]);
+    else
+      c->push = std::min(c->push, (J.transpose() * to).norm() / values[0]);
   }
   if (c->sigma == 1e9) c->sigma = 0;
   c->score = 1.5 * std::min(c->room, 0.5) / 0.5 + std::min(c->sigma, 0.03) / 0.03 +
              std::min(0.0, (c->clearance - kClear) / 0.001) +
-             std::min(0.0, (c->facing - kFacing) / 0.05);
+             std::min(0.0, (c->facing - kFacing) / 0.05) + std::min(0.0, (c->push - kPush) / 0.05);
   if (c->score + kMostOfMargins + kMostOfClimb <= enough) return;
 
   const auto margin = [&](int without) {
@@ -242,8 +246,11 @@ void Judge(const HandModel& hand, const BallTask& task, double enough, BallGrasp
   double others = 1e9;
   for (int f = 0; f < n; ++f)
     if (f != c->opposing) others = std::min(others, c->margin_without[static_cast<std::size_t>(f)]);
-  c->score += 2.0 * std::min(*least, 0.3) / 0.3 + std::min(*least, 1.5) + std::min(others, 1.0) +
-              std::min(c->load_margin, 1.5);
+  const bool none_leaves = n <= kFewFingers;
+  const double one_less = none_leaves ? c->load_margin : *least;
+  if (none_leaves) others = c->load_margin;
+  c->score += 2.0 * std::min(one_less, 0.3) / 0.3 + std::min(one_less, 1.5) +
+              std::min(others, 1.0) + std::min(c->load_margin, 1.5);
   if (c->score + kMostOfClimb <= enough) return;
   c->climb = dexterous ? 1e9 : 0;
   if (dexterous)

@@ -13,6 +13,9 @@ namespace regrasp {
 /// Leaves 9 mm to a ball 18 mm larger across [m].
 inline constexpr double kOpenGap = 0.018;
 
+/// Of so many fingers or fewer none can leave: what counts is the margin with all of them.
+inline constexpr int kFewFingers = 3;
+
 /// What is grasped, and how contacts are judged.
 struct BallTask {
   double radius = 0.025;                                    ///< [m]
@@ -34,6 +37,8 @@ struct BallGrasp {
       0;              ///< least gap of links of different fingers, of the ball to other links [m]
   double sigma = 0;   ///< least singular value of a finger's Jacobian; of fingers of 3 joints [m]
   double climb = 0;   ///< least gain of manipulability within 5 mm of the contact, in shares
+  double push = 0;    ///< least share of a fingertip's motion that can go along its contact's
+                      ///< normal; of fingers of fewer than 3 joints, which must press so
   double facing = 0;  ///< least cosine of a fingertip's axis to the ball's centre
   int opposing = -1;  ///< finger without which the margin is least
 };

@@ -6,15 +6,16 @@
 namespace regrasp {
 namespace {
 
-constexpr double kDepth = 0.0075;  // reaches into one 15 mm smaller across [m]
-constexpr double kClear = 0.005;   // wanted gap of links [m]
-constexpr int kTrials = 300;       // directions per finger
-constexpr double kStep = 0.02;     // [rad]
+constexpr double kDepth = 0.0075;   // reaches into one 15 mm smaller across [m]
+constexpr double kLittle = 0.0025;  // ... 5 mm, where a fingertip slips past the ball [m]
+constexpr double kClear = 0.005;    // wanted gap of links [m]
+constexpr int kTrials = 300;        // directions per finger
+constexpr double kStep = 0.02;      // [rad]
 
 /// Searches one finger's straight line in joint space through its joints in `grasp`; the best goes
-/// into `open` and `closed`. False where there is none.
+/// into `open` and `closed`, which is `depth` inside the ball. False where there is none.
 bool FindLine(const HandModel& hand, const BallGrasp& grasp, const BallTask& task, int f,
-              RandomStream* random, JointVector* open, JointVector* closed) {
+              double depth, RandomStream* random, JointVector* open, JointVector* closed) {
   const double radius = task.radius;
   const Finger& finger = hand.fingers[static_cast<std::size_t>(f)];
   KinematicsData data;
@@ -48,7 +49,7 @@ bool FindLine(const HandModel& hand, const BallGrasp& grasp, const BallTask& tas
     };
     JointVector out = *open, in = *closed;
     for (int j : finger.joints) out[j] = in[j] = grasp.q[j];
-    if (!Go(-1, -kDepth, &in) || !Go(1, task.gap, &out)) continue;
+    if (!Go(-1, -depth, &in) || !Go(1, task.gap, &out)) continue;
     double margin = 1, length = 0;
     for (int j : finger.joints) {
       const Joint& joint = hand.joints[static_cast<std::size_t>(j)];
@@ -101,7 +102,9 @@ WayIn FindWayIn(const HandModel& hand, const BallTask& task, const BallGrasp& gr
     WayIn way;
     way.open = way.closed = grasp.q;
     for (int f = 0; f < hand.num_fingers(); ++f)
-      if (!FindLine(hand, grasp, task, f, random, &way.open, &way.closed)) way.stuck = f;
+      if (!FindLine(hand, grasp, task, f, kDepth, random, &way.open, &way.closed) &&
+          !FindLine(hand, grasp, task, f, kLittle, random, &way.open, &way.closed))
+        way.stuck = f;
     way.gap = 1e9;
     double score = way.stuck >= 0 ? -1e6 : 0;
     for (double change : {0.005, -0.0025}) {

@@ -14,9 +14,10 @@ struct WayIn {
   int stuck = -1;            ///< a finger that finds no way; -1 where all do
 };
 
-/// Each finger from task.gap off the ball to 7.5 mm inside it, so that smaller and larger balls are
-/// touched about where `grasp` touches this one. Random search for joints off their limits, links
-/// clear of each other and short, straight ways. `attempts`: ways that are compared.
+/// Each finger from task.gap off the ball to 7.5 mm inside it (2.5 mm where it cannot), so that
+/// smaller and larger balls are touched about where `grasp` touches this one. Random search for
+/// joints off their limits, links clear of each other and short, straight ways. `attempts`: ways
+/// that are compared.
 WayIn FindWayIn(const HandModel& hand, const BallTask& task, const BallGrasp& grasp, int attempts,
                 RandomStream* random);
 

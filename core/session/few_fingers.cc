@@ -3,9 +3,13 @@
 #include <cmath>
 
 namespace regrasp {
+namespace {
+
+constexpr int kEnough = 4;  // fingers, for one to leave
+
+}  // namespace
 
 Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command) {
-  constexpr int kEnough = 4;
   if (hand.num_fingers() >= kEnough) return {};
   if (command.type == CommandType::kExplore)
     return {Verdict::Kind::kBadState,
@@ -18,6 +22,17 @@ Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const 
           "turning by more than gait.step_rad needs a hand of four fingers or more: without the "
           "one that regrasps the others do not hold the object",
           "regrasp rotate with an angle of at most gait.step_rad: a turn without a regrasp"};
+}
+
+Verdict CheckFingers(const HandModel& hand, const Parameters& before, const Parameters& after,
+                     JobMethod running) {
+  if (hand.num_fingers() >= kEnough || running != JobMethod::kRotate ||
+      after.gait.step_rad >= before.gait.step_rad)
+    return {};
+  return {Verdict::Kind::kBadState,
+          "gait.step_rad cannot be lowered while a hand of two or three fingers turns the object: "
+          "the turn was taken as one motion, and none of the fingers can regrasp",
+          "regrasp stop, or wait for the turn to end"};
 }
 
 }  // namespace regrasp

@@ -14,4 +14,9 @@ namespace regrasp {
 /// rotation by more than one motion of the gait (gait.step_rad).
 Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command);
 
+/// Refuses parameters `after` that would take from a job that runs with `before` what the rule
+/// above has granted: a turn within one motion, when gait.step_rad is lowered.
+Verdict CheckFingers(const HandModel& hand, const Parameters& before, const Parameters& after,
+                     JobMethod running);
+
 }  // namespace regrasp

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/session/few_fingers.h"
 #include "daemon/requests/service.h"
 
 namespace regrasp {
@@ -58,7 +59,9 @@ void Service::OrderForJob(const JobRecord& job, std::vector<Command>* commands) 
     const auto verdict = [&](const Command& command) {
       Parameters then = reached;
       SetParameter(&then, command);
-      return regrasp::CheckMeasure(then, job.method, job.explore.criterion);
+      const Verdict fit = regrasp::CheckMeasure(then, job.method, job.explore.criterion);
+      if (fit.kind != Verdict::Kind::kAllowed) return fit;
+      return CheckFingers(hand(), reached, then, job.method);
     };
     const auto fits = std::find_if(next, commands->end(), [&](const Command& command) {
       const bool lost = IsPreset(RowOf(*next)) && IsSetByPreset(RowOf(command));

@@ -152,6 +152,24 @@ class Hand(Case):
                     self.assertEqual(self.json("job", "show", "2")["regrasps"], 0)
                 self.expect(0, "down")
 
+    def test_what_was_granted_to_three_fingers_is_not_taken_from_a_turn_that_runs(self):
+        self.expect(0, "-q", "hand", "new", self.write("three.urdf", hand(3)), "-o", self.dir / "three.toml")
+        self.addCleanup(self.regrasp, "down")
+        self.expect(0, "up", "--hand", self.dir / "three.toml", "--speed", "max", "--paused")
+        self.expect(0, "grasp")
+        self.expect(0, "step", 9000, "--wait")
+        self.expect(0, "rotate", "--angle", "15")
+        turn = self.json("job", "list")["jobs"][-1]["id"]
+        self.expect(0, "step", 100, "--wait")
+        error = self.refused(5, "param", "set", "gait.step_rad", "0.05")
+        self.assertIn("gait.step_rad cannot be lowered while a hand of two or three fingers turns", error)
+        self.expect(0, "param", "set", "gait.step_rad", "0.4")  # more is no harm
+        self.refused(5, "param", "reset", "gait")
+        self.expect(0, "step", 9000, "--wait")
+        done = self.json("job", "show", str(turn))
+        self.assertEqual((done["state"], done["regrasps"]), ("done", 0), done)
+        self.expect(0, "param", "set", "gait.step_rad", "0.05")
+
     def test_a_scenario_for_an_object_turns_it_until_it_fits(self):
         # A flat box, 20 x 60 x 70 mm, named from where the scenario stands; its inertia cannot be.
         (self.dir / "things").mkdir()

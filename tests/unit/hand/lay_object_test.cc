@@ -7,7 +7,9 @@
 #include <set>
 #include <string>
 
+#include "core/hand/kinematics.h"
 #include "core/hand/scenario.h"
+#include "core/world/start_overlap.h"
 
 namespace regrasp::hand {
 namespace {
@@ -108,6 +110,39 @@ TEST(LayObject, WhatHasNoSymmetryHas24WaysAndTheFirstSixPointElsewhere) {
   for (std::size_t k = 0; k < 24; ++k) {
     EXPECT_NEAR(box.turns[k].determinant(), 1, 1e-12);
     for (std::size_t j = 0; j < k; ++j) EXPECT_GT((box.turns[k] - box.turns[j]).norm(), 1);
+  }
+}
+
+// The same start counted by hand, way by way.
+TEST(LayObject, WaysThatAreClearInMoreStartsComeFirst) {
+  LoadedScenario model = LoadScenario("shadow", "", ModelSearchPath());
+  model.object = BoxOfTriangles({.03, .04, .075});
+  const ObjectBox box = BoxOf(model.object);
+  const Vector3d p_WB = model.scenario.X_WO.translation();
+  std::vector<Start> starts;
+  for (const double moved : {0.0, 0.004, -0.004, 0.008, -0.008})
+    for (int axis = 0; axis < 3; ++axis)
+      starts.push_back({model.scenario.q_preshape, moved * Vector3d::Unit(axis)});
+  const std::vector<Way> ways = WaysToLie(model, box, p_WB, starts);
+  ASSERT_FALSE(ways.empty());
+  KinematicsData data;
+  ForwardKinematics(model.hand, model.scenario.q_preshape, &data);
+  const std::vector<Isometry3d> X_WL(
+      data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(model.hand.links.size()));
+  int before = 0;
+  for (const Way& way : ways) {
+    EXPECT_LE(DeepestOverlap(model.hand, X_WL, model.object, way.X_WO).depth, kStartOverlap);
+    int inside = 0;
+    for (const Start& start : starts) {
+      Isometry3d X_WO = way.X_WO;
+      X_WO.translation() += start.moved;
+      inside += DeepestOverlap(model.hand, X_WL, model.object, X_WO).depth > kStartOverlap;
+    }
+    EXPECT_EQ(way.inside, inside);
+    EXPECT_GE(way.inside, before);
+    before = way.inside;
+    const double off = (way.X_WO * box.p_OB - p_WB).norm();
+    EXPECT_TRUE(off < 1e-12 || std::abs(off - 5e-3) < 1e-12) << off;
   }
 }
 

@@ -201,9 +201,9 @@ TEST_F(LoaderTest, RefusesBadObjects) {
        "<inertial><origin xyz=\"0 0 0.03\"/>",
        {"ball.urdf", "centre of mass", "outside of the shape"}},
       {"</robot>",
-       "<link name=\"b\"/><joint name=\"j\" type=\"fixed\"><parent link=\"object\"/><child "
-       "link=\"b\"/></joint></robot>",
-       {"ball.urdf", "exactly one link", "2"}},
+       "<link name=\"b\"/><joint name=\"j\" type=\"revolute\"><parent link=\"object\"/><child "
+       "link=\"b\"/><limit lower=\"0\" upper=\"1\" effort=\"1\"/></joint></robot>",
+       {"ball.urdf", "joint \"j\"", "\"revolute\"", "one rigid body; allowed is fixed"}},
       {"<sphere radius=\"0.025\"/>", "<mesh filename=\"no.obj\"/>", {"no.obj", "not found"}},
       {"<sphere radius=\"0.025\"/>",
        "<mesh filename=\"package://a/b.obj\"/>",

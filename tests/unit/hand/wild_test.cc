@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
@@ -134,6 +135,203 @@ TEST_F(WildTest, PlyWithColours) {
                         corner / 3) +
             vertices + faces);
   ExpectEll(Load(std::string("<mesh filename=\"coloured.ply\"") + kMillimetres));
+}
+
+/// A PLY file of the L, and of what other programs add to it.
+std::string Ply(const std::string& format, bool big) {
+  std::string text = fmt::format("ply\r\nformat {} 1.0\r\nelement vertex 60\r\n", format);
+  for (const char* axis : {"x", "y", "z"}) text += fmt::format("property float {}\r\n", axis);
+  text +=
+      "property list uint8 int16 marks\r\nelement face 20\r\nproperty uchar flags\r\nproperty list "
+      "uchar uint vertex_index\r\nelement edge 1\r\nproperty int a\r\nproperty double b\r\n"
+      "end_header\r\n";
+  const auto add = [&](auto value) {
+    std::array<char, sizeof(value)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(value));
+    if (big) std::reverse(bytes.begin(), bytes.end());
+    text.append(bytes.data(), bytes.size());
+  };
+  for (const Corners& corners : Ell())
+    for (const Vector3d& p : corners) {
+      for (const double c : p) add(static_cast<float>(c));
+      add(std::uint8_t{2});
+      for (const std::int16_t mark : {-7, 7}) add(mark);
+    }
+  for (std::uint32_t t = 0; t < 20; ++t) {
+    add(std::uint8_t{1});
+    add(std::uint8_t{3});
+    for (std::uint32_t k = 0; k < 3; ++k) add(3 * t + k);
+  }
+  add(std::int32_t{1});
+  add(2.5);
+  return text;
+}
+
+TEST_F(WildTest, BinaryPlyOfEitherByteOrderWithPropertiesOfOthers) {
+  const std::string mesh = "<mesh filename=\"bytes.ply\"";
+  Write("objects/bytes.ply", Ply("binary_little_endian", false));
+  ExpectEll(Load(mesh + kMillimetres));
+  Write("objects/bytes.ply", Ply("binary_big_endian", true));
+  ExpectEll(Load(mesh + kMillimetres));
+  const std::string whole = Ply("binary_little_endian", false);
+  Write("objects/bytes.ply", whole.substr(0, whole.size() - 20));
+  EXPECT_NE(Refusal(mesh + "/>").find("entry 19 of \"face\": the file ends within it"),
+            std::string::npos);
+}
+
+// The first byte of the first coordinate is that of a line's end.
+TEST_F(WildTest, BinaryPlyThatBeginsLikeALine) {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float "
+      "y\nproperty float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  const float corners[] = {-0.02F, -0.02F, -0.02F, 0.02F,  -0.02F, -0.02F,
+                           -0.02F, 0.02F,  -0.02F, -0.02F, -0.02F, 0.02F};
+  ASSERT_EQ(std::memcmp(corners, "\n", 1), 0);
+  text.append(reinterpret_cast<const char*>(corners), sizeof(corners));
+  for (const auto& face : {Eigen::Vector3i(0, 2, 1), Eigen::Vector3i(0, 1, 3),
+                           Eigen::Vector3i(0, 3, 2), Eigen::Vector3i(1, 2, 3)}) {
+    text += '\3';
+    text.append(reinterpret_cast<const char*>(face.data()), 12);
+  }
+  Write("objects/line.ply", text);
+  EXPECT_NEAR(ObjectSolid(Load("<mesh filename=\"line.ply\"/>")).volume, 0.064e-3 / 6, 1e-10);
+}
+
+TEST_F(WildTest, WhatAMeshFileClaimsIsHeldAgainstItsSize) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string body = "0 0 0\n.03 0 0\n0 .03 0\n0 0 .03\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  const auto refusal = [&](const std::string& text) {
+    Write("objects/claims.ply", text);
+    return Refusal("<mesh filename=\"claims.ply\"/>");
+  };
+  EXPECT_EQ(refusal(header + body), "taken");
+  const struct {
+    const char *from, *to, *word;
+  } cases[] = {
+      {"vertex 4", "vertex 10000000", "claims 10000000 entries of \"vertex\"; allowed are at most"},
+      {"vertex 4", "vertex 90000", "540000 bytes at least; after it stand 62"},
+      {"face 4", "face -4", "has the count \"-4\""},
+      {"face 4", "face 5", "entry 4 of \"face\": the file ends within it"},
+      {"end_header\n", "", "no end_header"},
+      {"ascii", "text", "the format \"text\" is unknown"},
+      {"float z", "half z", "type \"half\" is unknown"},
+      {"element face", "element faces", "no element \"face\""},
+      {".03 0 0", "0,03 0 0", "entry 1 of \"vertex\": \"0,03\" is no number"},
+      {".03 0 0", "nan 0 0", "entry 1 of \"vertex\": x, y and z must be finite"},
+      {"3 1 2 3", "3 1 2 4", "triangle 3 has the corner 4; there are 4 vertices"},
+      {"3 1 2 3", "-3 1 2 3", "entry 3 of \"face\": a list of -3 values"},
+      {"ply\n", "plx\n", "must be \"ply\""},
+  };
+  for (const auto& c : cases)
+    EXPECT_NE(refusal(Replaced(header + body, c.from, c.to)).find(c.word), std::string::npos)
+        << refusal(Replaced(header + body, c.from, c.to));
+  // An STL file's count.
+  std::string stl(84, '\0');
+  stl[80] = 12;
+  Write("objects/claims.stl", stl + std::string(550, '\0'));
+  EXPECT_NE(Refusal("<mesh filename=\"claims.stl\"/>")
+                .find("a binary STL file of 12 triangles has 684 bytes; this one has 634"),
+            std::string::npos);
+}
+
+TEST_F(WildTest, AMeshInCentimetresIsToldSo) {
+  std::string text, faces;
+  int corner = 0;
+  for (const Corners& corners : Ell())
+    for (const Vector3d& p : corners) {
+      text += fmt::format("v {} {} {}\n", p.x() / 10, p.y() / 10, p.z() / 10);
+      faces += fmt::format("{}{}", corner % 3 == 0 ? "\nf " : " ", corner + 1);
+      ++corner;
+    }
+  Write("objects/cm.obj", text + faces + "\n");
+  const std::string refusal = Refusal("<mesh filename=\"cm.obj\"/>");
+  const std::string scale = "scale=\"0.01 0.01 0.01\"";
+  EXPECT_NE(refusal.find("if the file is in centimetres: <mesh " + scale + ">"), std::string::npos)
+      << refusal;
+  ExpectEll(Load("<mesh filename=\"cm.obj\" " + scale + "/>"));
+}
+
+TEST_F(WildTest, AMirroredNodeOfACollada) {
+  std::string points, indices;
+  int corner = 0;
+  for (const Corners& corners : Ell())
+    for (const Vector3d& p : corners) {
+      points += fmt::format("{} {} {} ", p.x() / 1000, p.y() / 1000, p.z() / 1000);
+      indices += fmt::format("{} ", corner++);
+    }
+  for (const char* scale : {"1 1 1", "-1 1 1"}) {
+    Write(
+        "objects/node.dae",
+        fmt::format(
+            R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="meter" meter="1"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="180">{}</float_array><technique_common><accessor source="#a" count="60" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="20"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>{}</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node id="n">
+<scale>{}</scale><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)",
+            points, indices, scale));
+    ExpectEll(Load("<mesh filename=\"node.dae\"/>"));
+  }
+}
+
+// A frame above the object, a lid and a weight, all fixed: 30 g in the middle, 10 g 40 mm away.
+TEST_F(WildTest, LinksThatAreFixedToEachOtherAreOneBody) {
+  const auto fixed = [](const char* parent, const char* child, const char* xyz) {
+    return fmt::format(
+        R"(<joint name="to_{1}" type="fixed"><parent link="{0}"/><child link="{1}"/><origin xyz="{2}"/></joint>)",
+        parent, child, xyz);
+  };
+  Write("objects/parts.urdf",
+        R"(<robot name="parts"><link name="world"/><link name="body"><inertial><mass value="0.03"/>
+<inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="1e-5"/></inertial>
+<collision><geometry><box size="0.04 0.04 0.04"/></geometry></collision></link><link name="lid">
+<inertial><mass value="0.01"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>
+<collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.04 0.02"/></geometry></collision></link>)" +
+            fixed("world", "body", "0.5 0 0") + fixed("body", "lid", "0 0 0.02") + "</robot>");
+  const ObjectModel object = LoadObject((root_ / "objects/parts.urdf").string(), {}, {});
+  EXPECT_DOUBLE_EQ(object.mass, 0.04);
+  EXPECT_NEAR(ObjectSolid(object).volume, 0.04 * 0.04 * 0.06, 1e-9);
+  // About the common centre, 5 mm above the body's.
+  EXPECT_NEAR(object.I_OCom(0, 0), 1.1e-5 + 0.03 * 0.005 * 0.005 + 0.01 * 0.015 * 0.015, 1e-12);
+  EXPECT_NEAR(object.I_OCom(2, 2), 1.1e-5, 1e-12);
+  EXPECT_NEAR(ObjectSolid(object).centre.z(), 0.01 - 0.005, 1e-6);
+}
+
+TEST_F(WildTest, OfTwoInertialsTheFirstCountsAndTheOtherIsTold) {
+  const LoadedScenario once = LoaderTest::Load();
+  EditHand("<mass value=\"0.01\"/><inertia",
+           "<mass value=\"0.01\"/><inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" iyz=\"0\" "
+           "izz=\"1e-6\"/></inertial><inertial><mass value=\"0.5\"/><inertia");
+  const LoadedScenario twice = LoaderTest::Load();
+  EXPECT_EQ(twice.hand.links[2].mass, once.hand.links[2].mass);
+  ASSERT_EQ(twice.report.warnings.size(), once.report.warnings.size() + 1);
+  EXPECT_TRUE(std::ranges::any_of(twice.report.warnings, [](const ModelWarning& warning) {
+    return warning.Line().find("mini.urdf:9: link \"tip\": a second <inertial> is not read") !=
+           std::string::npos;
+  }));
+  EditHand("<mass value=\"0.01\"/><inertia",
+           "<mass value=\"0.01\"/><inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" iyz=\"0\" "
+           "izz=\"1e-6\"/></inertial><inertial><mass value=\"0,5\"/><inertia");
+  ExpectRefused({"mini.urdf:9", "link \"tip\"", "\"0,5\"", "finite number"});
+}
+
+// Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
+TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
+  EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"-0.29 0.001 0.17\"/>");
+  ExpectRefused({"mini.urdf:5", "link \"upper\"", "centre of mass (-0.29, 0.001, 0.17) m",
+                 "mm outside its shapes", "--inertia-from-shape"});
+  LoadOptions options;
+  options.inertia_from_shape = true;
+  const LoadedScenario computed = LoadScenario("mini", "", {root_}, options);
+  EXPECT_LT(computed.hand.links[1].p_LCom.norm(), 1e-9);
+  EXPECT_DOUBLE_EQ(computed.hand.links[1].mass, 0.03);
+  // Somewhat outside is common: motors and plates without a shape.
+  EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"0 0 0.05\"/>");
+  EXPECT_EQ(LoaderTest::Load().hand.links[1].p_LCom, Vector3d(0, 0, 0.05));
 }
 
 TEST_F(WildTest, PathsOfOtherSystems) {

@@ -304,6 +304,44 @@ TEST(ShippedHands, HaveAGraspThatEveryFingerMayLeave) {
   }
 }
 
+// None of three can leave, so that the search must not look for what two of them hold.
+TEST_F(PostureTest, ThreeFingersAreJudgedByWhatTheyHoldTogether) {
+  const fs::path file = Write("hand.urdf", RadialHandUrdf(3));
+  const HandModel hand = LoadHand(file, GuessHand(file).layout);
+  GraspSearch search;
+  search.steps = 1500;
+  search.starts = 2;
+  const std::vector<BallGrasp> found = FindGrasps(hand, search);
+  ASSERT_FALSE(found.empty());
+  EXPECT_GT(found.front().load_margin, 1.0);
+  EXPECT_EQ(found.front().push, 1) << "fingers of three joints press whichever way";
+}
+
+// A finger of two joints moves its tip in a plane: it must not touch the ball from beside it.
+TEST_F(PostureTest, FingersOfTwoJointsPressAlongTheirNormal) {
+  std::string text = RadialHandUrdf(3);
+  for (int f = 1; f <= 3; ++f)
+    text = Replaced(text, fmt::format("\"arm{}_side\" type=\"revolute\"", f),
+                    fmt::format("\"arm{}_side\" type=\"fixed\"", f));
+  const fs::path file = Write("hand.urdf", text);
+  const HandModel hand = LoadHand(file, GuessHand(file).layout);
+  ASSERT_EQ(hand.num_joints(), 6);
+  GraspSearch search;
+  search.steps = 1500;
+  search.starts = 2;
+  std::vector<BallGrasp> found = FindGrasps(hand, search);
+  ASSERT_FALSE(found.empty());
+  EXPECT_GT(found.front().push, 0.7);
+  RandomStream random(1, 2);
+  EXPECT_EQ(FindWayIn(hand, search.task, found.front(), 4, &random).stuck, -1);
+  // The ball beside the fingers' planes: what they can do across their normals tells less.
+  BallGrasp beside = found.front();
+  beside.p_WO += Vector3d(0.012, 0.012, 0);
+  ASSERT_TRUE(TouchBall(hand, search.task.radius, beside.p_WO, &beside.q));
+  Judge(hand, search.task, -1e9, &beside);
+  EXPECT_LT(beside.push, found.front().push);
+}
+
 TEST_F(PostureTest, WhatIsBehindARoundedTipMustBeClearOfTheBall) {
   const fs::path file = Write("hand.urdf", RadialHandUrdf(4));
   const HandModel bare = LoadHand(file, GuessHand(file).layout);
