@@ -50,17 +50,18 @@ void StateEstimator::UpdatePose(const SensorReading& reading, const ControlParam
     e.q_WO = FromRotationVector(step.turn_W) * e.q_WO;
     velocity_W_ += velocity_gain * (step.At(e.p_WO) / dt_ - velocity_W_);
     spin_W_ += velocity_gain * (step.turn_W / dt_ - spin_W_);
-    const bool fresh = num_poses_ == 0 || reading.object_age_s < pose_age_s_;
-    pose_age_s_ = reading.object_age_s;
-    if (fresh) {
+    if (reading.object_tick != pose_tick_) {
+      const double age_s = static_cast<double>(reading.tick - reading.object_tick) * dt_;
       gain = std::max(Gain(1 / reading.object_rate_hz, parameters.slow_pose_filter_s),
-                      1.0 / ++num_poses_);
-      late_p = reading.object_age_s * velocity_W_;
-      late_turn = reading.object_age_s * spin_W_;
+                      1.0 / (num_poses_ + 1));
+      late_p = age_s * velocity_W_;
+      late_turn = age_s * spin_W_;
     } else {
       gain = 0;
     }
   }
+  if (gain > 0) num_poses_ = std::min(num_poses_ + 1, kManyPoses);
+  pose_tick_ = reading.object_tick;
   e.p_WO += gain * (reading.p_WO + late_p - e.p_WO);
   e.q_WO = FromRotationVector(gain * RotationVector(FromRotationVector(late_turn) * reading.q_WO *
                                                     e.q_WO.conjugate())) *

@@ -76,8 +76,8 @@ class StateEstimator {
     v("p_WO", e.p_WO);
     v("q_WO", e.q_WO);
     v("object_scale", e.object_scale);
-    v("num_poses", num_poses_, kCountOrNone);
-    v("pose_age_s", pose_age_s_);
+    v("num_poses", num_poses_, FieldRange{0, kManyPoses});
+    v("pose_tick", pose_tick_, kCountOrNone);
     v("velocity", velocity_W_);
     v("spin", spin_W_);
     if constexpr (V::kLoads) {
@@ -111,8 +111,9 @@ class StateEstimator {
   bool started_ = false;
   std::array<ContactFilter, kMaxFingers> contact_{};
   std::array<TaxelContact, kMaxFingers> taxels_;  // made when a reading says their pitch
-  int num_poses_ = 0;                             // of a pose sensor with a rate
-  double pose_age_s_ = 0;                         // in the reading before
+  static constexpr int kManyPoses = 1000;         // of which the mean is as good as known
+  int num_poses_ = 0;                             // so far
+  std::int64_t pose_tick_ = -1;                   // SensorReading::object_tick of the last one
   Vector3d velocity_W_ = Vector3d::Zero(), spin_W_ = Vector3d::Zero();  // by the fingers
   Estimate estimate_;
 };

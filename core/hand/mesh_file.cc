@@ -240,7 +240,9 @@ std::vector<std::byte> Receive(const fs::path& file, int in, const MeshLimits& l
 /// Why a file is no STL file; empty where it is one or may be: in words, it begins with "solid".
 std::string WhyNoStl(const fs::path& file, std::uint64_t size) {
   std::array<char, 84> head{};
-  std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::strerror(errno);
+  in.read(head.data(), head.size());
   if (std::string_view(head.data(), 5) == "solid") return "";
   if (size < head.size())
     return fmt::format("{} bytes that do not begin with \"solid\" are no STL file", size);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -51,8 +52,8 @@ class Reader {
   Reader(const std::filesystem::path& file, const MeshLimits& limits)
       : file_(file), limits_(limits) {
     std::ifstream in(file, std::ios::binary);
+    if (!in) Fail(fmt::format("cannot read the mesh: {}", std::strerror(errno)));
     text_.assign(std::istreambuf_iterator<char>(in), {});
-    if (in.bad()) Fail("cannot read the mesh");
   }
 
   RawMesh Read() {
@@ -120,10 +121,13 @@ class Reader {
         if (error != std::errc() || rest != b.data() + b.size())
           Fail(fmt::format("the header's element {} has the count {}; must be 0 or more", Quoted(a),
                            Quoted(b)));
+        if (std::ranges::find(elements_, a, &Element::name) != elements_.end())
+          Fail(fmt::format("the header has a second element {}", Quoted(a)));
         elements_.push_back(element);
       } else if (word == "property") {
         if (elements_.empty()) Fail("the header has a property before the first element");
         const bool list = a == "list";
+        if ((list ? d : b).empty()) Fail("the header has a property without a name");
         elements_.back().properties.push_back(
             {list ? d : b, TypeOf(list ? c : a), list ? TypeOf(b) : nullptr});
       }
@@ -220,14 +224,16 @@ class Reader {
       for (std::size_t k = 0; k < values; ++k) {
         const double value = Next(*property.type);
         if (!corners) continue;
-        if (!(std::abs(value) <= 2e9)) FailHere(fmt::format("the corner {:g}", value));
+        if (!(std::abs(value) <= 2e9) || value != std::floor(value))
+          FailHere(fmt::format("the corner {:g}; must be the number of a vertex", value));
         t[1] = t[2];
         t[2] = static_cast<int>(value);
         if (k == 0) t[0] = t[2];
-        if (k >= 2) mesh_.triangles.push_back(t);
+        if (k < 2) continue;
+        if (mesh_.triangles.size() >= limits_.triangles)
+          Fail(fmt::format("more than {} triangles", limits_.triangles));
+        mesh_.triangles.push_back(t);
       }
-      if (mesh_.triangles.size() > limits_.triangles)
-        Fail(fmt::format("more than {} triangles", limits_.triangles));
     }
   }
 

@@ -67,9 +67,12 @@ std::string ModelJson(const LoadedScenario& model) { return fields::ToJson(model
 const std::string& ModelText::Of(const LoadedScenario& model) {
   std::string bytes = BytesOf(model);
   if (bytes == bytes_) return text_;
-  text_ = ModelJson(model);
-  model_ = model;
-  model_.report = {};
+  // All or nothing, also where memory ends in between.
+  std::string text = ModelJson(model);
+  LoadedScenario copy = model;
+  copy.report = {};
+  text_ = std::move(text);
+  model_ = std::move(copy);
   bytes_ = std::move(bytes);
   return text_;
 }

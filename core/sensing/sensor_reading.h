@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "core/common/fields.h"
 #include "core/common/fixed_vector.h"
 #include "core/common/frames.h"
 #include "core/common/limits.h"
@@ -33,9 +34,9 @@ struct SensorReading {
   Vector3d p_WO = Vector3d::Zero();                       ///< object position [m]
   Quaterniond q_WO = Quaterniond::Identity();             ///< object orientation
   // What the sensors are, and how old the pose is.
-  double object_rate_hz = 0;  ///< the pose comes at this rate; 0: with every reading
-  double object_age_s = 0;    ///< since the pose was sampled [s]
-  double taxel_pitch_m = 0;   ///< > 0: fingertips report taxels this far apart (core/hand/taxels.h)
+  double object_rate_hz = 0;     ///< the pose comes at this rate; 0: with every reading
+  std::int64_t object_tick = 0;  ///< in which the pose was sampled
+  double taxel_pitch_m = 0;  ///< > 0: fingertips report taxels this far apart (core/hand/taxels.h)
   template <typename V>
   void Fields(V& v) {
     v("tick", tick);
@@ -44,7 +45,7 @@ struct SensorReading {
     v("p_WO", p_WO);
     v("q_WO", q_WO);
     v("object_rate_hz", object_rate_hz);
-    v("object_age_s", object_age_s);
+    v("object_tick", object_tick, kCountOrNone);
     v("taxel_pitch_m", taxel_pitch_m);
   }
 };

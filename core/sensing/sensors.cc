@@ -153,11 +153,7 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
         levels_.object_drift_m * std::sqrt(sample_s()) * object_drift_stream_.Normal3();
   if (levels_.object_rate_hz > 0) {
     const std::int64_t frame = PeriodIndex(tick, dt_, levels_.object_rate_hz);
-    if (frame == last_pose_frame_) {
-      reading_.object_age_s =
-          static_cast<double>(tick - pose_frames_[num_pose_frames_ - 1].tick) * dt_;
-      return;
-    }
+    if (frame == last_pose_frame_) return;
     last_pose_frame_ = frame;
   }
   const int kept = levels_.object_rate_hz > 0
@@ -174,7 +170,7 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   const Pose& reported = pose_frames_[num_pose_frames_ - 1];
   reading_.p_WO = reported.p;
   reading_.q_WO = reported.q;
-  reading_.object_age_s = static_cast<double>(tick - reported.tick) * dt_;
+  reading_.object_tick = reported.tick;
 }
 
 }  // namespace regrasp

@@ -1,5 +1,6 @@
 #include "core/session/quality_monitor.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/gait/gait_parameters.h"
@@ -19,7 +20,7 @@ void QualityMonitor::Update(const ControlTick& now) {
       stability_.values[i] = kMeasureTable[i].compute(input);
   stability_.threshold = parameters.stability_threshold;
 
-  if (++tick_ >= Ticks(kMarginInterval, now.dt)) {
+  if (++tick_ >= std::max(2, Ticks(kMarginInterval, now.dt))) {
     tick_ = 0;
     UpdateMargin(now);
   } else {

@@ -33,7 +33,7 @@ class QualityMonitor {
     v("stability", stability_);
     v("load_margin_without", load_margin_without_, kUnbounded);
     v("margins", margins_);
-    v("tick", tick_);
+    v("tick", tick_, FieldRange{0, 1e6});
     v("turn", turn_, FieldRange{0, kMaxFingers});
     v("epsilon_grasp", epsilon_grasp_);
     v("epsilon_scale", epsilon_scale_, FieldRange{1e-6, 1e3});

@@ -178,6 +178,7 @@ TEST_F(StateEstimatorTest, TheFingersThatHoldTellHowTheObjectMovesBetweenPoses) 
     const Vector3d start = reading.p_WO;
     Vector3d truth = start;
     std::vector<Vector3d> path;
+    std::int64_t object_tick = 0;
     for (int tick = 0; tick < 4600; ++tick) {
       if (tick >= 4000) {
         const Vector3d step(2e-5, 0, 0);
@@ -191,11 +192,12 @@ TEST_F(StateEstimatorTest, TheFingersThatHoldTellHowTheObjectMovesBetweenPoses) 
       if (tick % 67 == 0) {
         reading.p_WO =
             path[static_cast<std::size_t>(std::max(0, tick - 67))] + 5e-3 * random.Normal3();
-        reading.object_age_s = std::min(tick, 67) * kDt;
+        object_tick = std::max(0, tick - 67);
       } else {
         reading.p_WO = path.front();  // held by a real sensor; not read again in any case
-        reading.object_age_s += kDt;
       }
+      reading.tick = tick;
+      reading.object_tick = object_tick;
       estimator.Update(reading, parameters, holding ? all : FingerSet{});
     }
     const double error = (estimator.estimate().p_WO - truth).norm();
@@ -207,16 +209,19 @@ TEST_F(StateEstimatorTest, TheFingersThatHoldTellHowTheObjectMovesBetweenPoses) 
   }
 }
 
-// On taxels the contact of a fingertip on a ball is known much better than the taxel's centre.
+// On taxels the contact of a fingertip is known better than the taxel's centre, also where the
+// ball's centre is believed 8 mm from where it is.
 TEST_F(StateEstimatorTest, TaxelsAreNotBelievedToTheirCentres) {
   constexpr double kPitch = 6.6e-3;
   RandomStream random(6, 0);
   double followed = 0, by_centre = 0;
-  for (int trial = 0; trial < 20; ++trial) {
+  for (int trial = 0; trial < 50; ++trial) {
     StateEstimator estimator(hand_, kDt);
-    SensorReading reading =
-        TouchingReading(hand_, q_ + 0.05 * JointVector::Random(hand_.num_joints()), 1.0);
+    JointVector q = q_;
+    for (double& angle : q) angle += 0.05 * random.Normal();
+    SensorReading reading = TouchingReading(hand_, q, 1.0);
     const SensorReading clean = reading;
+    reading.p_WO += 8e-3 * random.Normal3().normalized();
     reading.taxel_pitch_m = kPitch;
     KinematicsData kinematics;
     ForwardKinematics(hand_, reading.q, &kinematics);
@@ -238,7 +243,7 @@ TEST_F(StateEstimatorTest, TaxelsAreNotBelievedToTheirCentres) {
       by_centre += (reading.fingertips[i].normal_W - clean.fingertips[i].normal_W).norm();
     }
   }
-  EXPECT_LT(followed, 0.2 * by_centre);
+  EXPECT_LT(followed, 0.6 * by_centre);
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(JournalText, WhatOnlyLooksLikeAKnownModelIsRefused) {
   for (const char* before : {R"({"a":"b)", R"({"format":"regrasp-run/2","a":{"b":1)", R"({"a":})"})
     EXPECT_THROW(ParseConfig(before + (R"(,"model":)" + model) + "}", &known), JournalError)
         << before;
-  // Known is not yet good: the parameters of the run do not fit it.
+  // Known is not yet good: a seed below 0.
   std::string spoilt = text;
   const auto seed = spoilt.find(R"("seed":)");
   spoilt.insert(seed + 7, "-");
