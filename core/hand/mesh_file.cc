@@ -125,6 +125,27 @@ void SendScene(int out, const aiScene& scene, const MeshLimits& limits) {
   }
 }
 
+void SendMesh(int out, const RawMesh& mesh) {
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float) &&
+                sizeof(Eigen::Vector3i) == 3 * sizeof(std::uint32_t));
+  Header header;
+  header.vertices = mesh.vertices.size();
+  header.triangles = mesh.triangles.size();
+  Send(out, &header, sizeof(header));
+  Send(out, mesh.vertices.data(), mesh.vertices.size() * sizeof(Eigen::Vector3f));
+  Send(out, mesh.triangles.data(), mesh.triangles.size() * sizeof(Eigen::Vector3i));
+}
+
+void ReadByAssimp(int out, const std::string& file, const MeshLimits& limits) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_DropNormals);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    SendError(out, importer.GetErrorString());
+  else
+    SendScene(out, *scene, limits);
+}
+
 void LimitChild(const MeshLimits& limits) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT, SIGHUP})
@@ -145,7 +166,8 @@ void LimitChild(const MeshLimits& limits) {
 #endif
 }
 
-[[noreturn]] void RunChild(const std::string& file, int out, const MeshLimits& limits) {
+[[noreturn]] void RunChild(const std::string& file, const std::string& suffix, int out,
+                           const MeshLimits& limits) {
   LimitChild(limits);
   const int nowhere = ::open("/dev/null", O_RDWR);
   ::dup2(nowhere, STDERR_FILENO);
@@ -153,13 +175,10 @@ void LimitChild(const MeshLimits& limits) {
   ::dup2(out, 3);
   ::close_range(4, ~0U, 0);
   try {
-    Assimp::Importer importer;
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_DropNormals);
-    if (scene == nullptr || scene->mRootNode == nullptr)
-      SendError(3, importer.GetErrorString());
+    if (suffix == ".ply")
+      SendMesh(3, ReadPly(file, limits));
     else
-      SendScene(3, *scene, limits);
+      ReadByAssimp(3, file, limits);
   } catch (const std::bad_alloc&) {
     SendError(3, fmt::format("needs more than {} MiB of memory", limits.memory_bytes >> 20));
   } catch (const std::exception& error) {
@@ -308,7 +327,7 @@ RawMesh DecodeMesh(const fs::path& file, std::span<const std::byte> bytes,
 }
 
 RawMesh ReadMeshFile(const fs::path& file, const MeshLimits& limits) {
-  if (CheckFile(file, limits) == ".ply") return ReadPly(file, limits);
+  const std::string suffix = CheckFile(file, limits);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
     Fail(file, fmt::format("cannot start the mesh reader: {}", std::strerror(errno)));
@@ -316,7 +335,7 @@ RawMesh ReadMeshFile(const fs::path& file, const MeshLimits& limits) {
   auto out = std::make_unique<Descriptor>(ends[1]);
   const pid_t pid = ::fork();
   if (pid < 0) Fail(file, fmt::format("cannot start the mesh reader: {}", std::strerror(errno)));
-  if (pid == 0) RunChild(file.string(), ends[1], limits);
+  if (pid == 0) RunChild(file.string(), suffix, ends[1], limits);
   Child child(pid);
   out.reset();
   const std::vector<std::byte> bytes = Receive(file, in.number, limits);

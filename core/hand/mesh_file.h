@@ -1,8 +1,7 @@
 #pragma once
 
 /// Mesh files as lists of triangles. The file is parsed by a child process with limits of time and
-/// memory, because a damaged file may end, hang or fill the process that reads it. PLY files are
-/// read here (ply_file.h), every count held against the limits and the file's size.
+/// memory, because a damaged file may end, hang or fill the process that reads it.
 
 #include <filesystem>
 #include <span>
