@@ -9,8 +9,6 @@
 ///     over the surface divided by the distance of its centre from the object's;
 ///   - it is taken back to the border of the cell of the taxel that reports.
 
-#include <array>
-
 #include "core/common/frames.h"
 #include "core/hand/taxels.h"
 
@@ -28,11 +26,10 @@ class TaxelContact {
   Vector3d IntoCell(const Vector3d& p_LC, const Vector3d& normal_L) const;
 
  private:
-  int Nearest(const Vector3d& p_L) const;
   Vector3d PointOf(const Vector3d& normal_L, const Vector3d& near_L) const;
   TipAxes tip_;
   double pitch_ = 0;
-  std::array<Taxel, kTaxelRows * kTaxelColumns> taxels_;
+  Taxels taxels_;
 };
 
 }  // namespace regrasp

@@ -25,8 +25,8 @@ TipAxes MakeTipAxes(const HandModel& hand, int finger) {
   return tip;
 }
 
-std::array<Taxel, kTaxelRows * kTaxelColumns> MakeTaxels(const TipAxes& tip, double pitch) {
-  std::array<Taxel, kTaxelRows * kTaxelColumns> taxels;
+Taxels MakeTaxels(const TipAxes& tip, double pitch) {
+  Taxels taxels;
   const double quarter = M_PI / 2 * tip.radius;  // from the apex to the end of the rounding
   for (int row = 0; row < kTaxelRows; ++row) {
     const double arc = (row + 0.5) * pitch;
@@ -42,6 +42,12 @@ std::array<Taxel, kTaxelRows * kTaxelColumns> MakeTaxels(const TipAxes& tip, dou
     }
   }
   return taxels;
+}
+
+const Taxel& NearestTaxel(const Taxels& taxels, const Vector3d& p_L) {
+  return *std::min_element(taxels.begin(), taxels.end(), [&](const Taxel& a, const Taxel& b) {
+    return (a.p_LT - p_L).squaredNorm() < (b.p_LT - p_L).squaredNorm();
+  });
 }
 
 }  // namespace regrasp

@@ -31,10 +31,15 @@ struct Taxel {
 
 inline constexpr int kTaxelRows = 4, kTaxelColumns = 3;
 
+using Taxels = std::array<Taxel, kTaxelRows * kTaxelColumns>;
+
 /// The taxels `pitch` [m] apart: rows at 1/2, 3/2, 5/2, 7/2 pitches along the surface from the
 /// apex, over the rounded end and then back along the pad; columns one pitch apart around the link,
 /// centred on the pad, at most 120 degrees. Rows that would lie behind the segment's start lie at
 /// its start.
-std::array<Taxel, kTaxelRows * kTaxelColumns> MakeTaxels(const TipAxes& tip, double pitch);
+Taxels MakeTaxels(const TipAxes& tip, double pitch);
+
+/// The taxel whose centre is nearest to `p_L` [m, frame of the tip link]; the first of equals.
+const Taxel& NearestTaxel(const Taxels& taxels, const Vector3d& p_L);
 
 }  // namespace regrasp

@@ -133,12 +133,9 @@ void Sensors::ReadFingertips(const WorldState& truth) {
     if (levels_.taxel_pitch_m > 0) {
       const Vector3d p_LC = X_WL.inverse() * out.p_WC;
       const auto taxels = MakeTaxels(tips_[f], levels_.taxel_pitch_m);
-      const Taxel* nearest =
-          std::min_element(taxels.begin(), taxels.end(), [&](const Taxel& a, const Taxel& b) {
-            return (a.p_LT - p_LC).squaredNorm() < (b.p_LT - p_LC).squaredNorm();
-          });
-      out.p_WC = X_WL * nearest->p_LT;
-      out.normal_W = -(X_WL.linear() * nearest->outward_L).normalized();
+      const Taxel& nearest = NearestTaxel(taxels, p_LC);
+      out.p_WC = X_WL * nearest.p_LT;
+      out.normal_W = -(X_WL.linear() * nearest.outward_L).normalized();
     }
     out.normal_W = Tilted(out.normal_W, tilt_a, tilt_b);
     errors_[f].Apply(levels_, X_WL, sample_s(), &out);

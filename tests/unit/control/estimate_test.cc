@@ -230,10 +230,7 @@ TEST_F(StateEstimatorTest, TaxelsAreNotBelievedToTheirCentres) {
       const Isometry3d& X_WL = kinematics.X_WL[hand_.fingers[static_cast<std::size_t>(i)].tip_link];
       const auto taxels = MakeTaxels(MakeTipAxes(hand_, i), kPitch);
       const Vector3d p_LC = X_WL.inverse() * r.p_WC;
-      const Taxel& taxel =
-          *std::min_element(taxels.begin(), taxels.end(), [&](const Taxel& a, const Taxel& b) {
-            return (a.p_LT - p_LC).squaredNorm() < (b.p_LT - p_LC).squaredNorm();
-          });
+      const Taxel& taxel = NearestTaxel(taxels, p_LC);
       r.p_WC = X_WL * taxel.p_LT;
       r.normal_W = -(X_WL.linear() * taxel.outward_L);
     }

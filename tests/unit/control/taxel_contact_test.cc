@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/common/random.h"
@@ -18,13 +17,6 @@ TipAxes Tip() {
   tip.radius = 0.007;
   tip.segment = 0.020;
   return tip;
-}
-
-const Taxel& Nearest(const std::array<Taxel, kTaxelRows * kTaxelColumns>& taxels,
-                     const Vector3d& p_L) {
-  return *std::min_element(taxels.begin(), taxels.end(), [&](const Taxel& a, const Taxel& b) {
-    return (a.p_LT - p_L).squaredNorm() < (b.p_LT - p_L).squaredNorm();
-  });
 }
 
 /// An outward normal of an object that touches the rounding on the pad's side.
@@ -45,7 +37,7 @@ TEST(TaxelContact, WithinTheCellTheNormalStays) {
   RandomStream random(3, 0);
   for (int trial = 0; trial < 200; ++trial) {
     const Vector3d normal = NormalOnPad(&random);
-    const Taxel& taxel = Nearest(taxels, -Tip().radius * normal);
+    const Taxel& taxel = NearestTaxel(taxels, -Tip().radius * normal);
     EXPECT_EQ(contact.IntoCell(taxel.p_LT, normal), normal) << trial;
   }
 }
@@ -57,16 +49,16 @@ TEST(TaxelContact, FromOutsideItIsTakenToTheBorderAndNoFarther) {
   int outside = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const Vector3d truth = NormalOnPad(&random), believed = NormalOnPad(&random);
-    const Taxel& reported = Nearest(taxels, -Tip().radius * truth);
+    const Taxel& reported = NearestTaxel(taxels, -Tip().radius * truth);
     const Vector3d n = contact.IntoCell(reported.p_LT, believed);
     EXPECT_NEAR(n.norm(), 1, 1e-12);
-    EXPECT_EQ(&Nearest(taxels, -Tip().radius * n), &reported) << trial;
-    if (&Nearest(taxels, -Tip().radius * believed) == &reported) continue;
+    EXPECT_EQ(&NearestTaxel(taxels, -Tip().radius * n), &reported) << trial;
+    if (&NearestTaxel(taxels, -Tip().radius * believed) == &reported) continue;
     ++outside;
     // Half a degree back towards what was believed lies outside.
     const Vector3d axis = n.cross(believed).normalized();
     const Vector3d back = Eigen::AngleAxisd(0.5 * kDegree, axis) * n;
-    EXPECT_NE(&Nearest(taxels, -Tip().radius * back), &reported) << trial;
+    EXPECT_NE(&NearestTaxel(taxels, -Tip().radius * back), &reported) << trial;
   }
   EXPECT_GT(outside, 50);
 }
@@ -83,7 +75,7 @@ TEST(TaxelContact, BordersCorrectWhatMotionTells) {
                  azimuth = 35 * std::sin(0.0171 * k) * kDegree;
     const Vector3d truth = -Vector3d(std::sin(polar) * std::sin(azimuth),
                                      std::sin(polar) * std::cos(azimuth), std::cos(polar));
-    const Taxel& taxel = Nearest(taxels, -Tip().radius * truth);
+    const Taxel& taxel = NearestTaxel(taxels, -Tip().radius * truth);
     if (k == 0) believed = unbounded = -taxel.outward_L;
     const Vector3d moved = k == 0 ? Vector3d(Vector3d::Zero()) : Vector3d(1.2 * (truth - before));
     before = truth;
