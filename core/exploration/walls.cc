@@ -13,7 +13,6 @@ struct Capsule {
   double radius = 0;
 };
 
-constexpr double kDamping = 1e-6;    // m²: of J⁺ (1 mm)
 constexpr double kTouching = 1e-6;   // m: nearer axes have no direction between them
 constexpr double kLeastShare = 0.2;  // of a direction that is tangential: less is no wall
 constexpr double kLeastRate = 0.2;   // links that near each other more slowly are no wall
@@ -154,8 +153,8 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
                const ExplorationParameters& parameters, Walls* walls) {
   walls->clear();
   const FingerEstimate& f = estimate.fingers[finger];
-  const Explorer explorer{
-      hand, estimate, parameters, finger, hand.fingers[finger], f, DampedInverse(f.J, kDamping)};
+  const Explorer explorer{hand, estimate,          parameters, finger, hand.fingers[finger],
+                          f,    DampedInverse(f.J)};
   AddJointLimits(explorer, walls);
   AddTipSide(explorer, walls);
   AddOtherFingers(explorer, walls);

@@ -8,7 +8,6 @@
 namespace regrasp {
 namespace {
 
-constexpr double kDamping = 1e-6;        // m²: of the joint rates (1 mm)
 constexpr double kThereTurning = 1e-4;   // rad
 constexpr double kThereShifting = 1e-5;  // m
 
@@ -54,7 +53,7 @@ bool LocalManipulation::AtJointLimit(const ControlTick& tick, int finger,
   const double least_rate =
       (turns() ? tick.gait.limit_rate : 0.0) + tick.gait.limit_rate_shift * per_path_.v_W.norm();
   const FingerEstimate& f = tick.finger(finger);
-  const Vector3d along = DampedInverse(f.J, kDamping) * v_W;
+  const Vector3d along = DampedInverse(f.J) * v_W;
   const auto& joints = tick.hand.fingers[finger].joints;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const double q = tick.estimate.q[joints[k]];

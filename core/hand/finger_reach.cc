@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "core/hand/damped_inverse.h"
+
 namespace regrasp {
 namespace {
 
-constexpr double kDamping2 = 1e-6;     // of the pseudo-inverse [m²]
 constexpr double kClose = 2e-4;        // the tip is there [m]
 constexpr double kLongestStep = 0.35;  // per joint and step [rad]
 
@@ -18,8 +19,7 @@ Bone BoneOf(const Link& link, const Isometry3d& X_WL) {
 
 /// J⁺ x.
 FingerVector Solve(const FingerJacobian& J, const Vector3d& x) {
-  const Matrix3d JJt = J * J.transpose() + kDamping2 * Matrix3d::Identity();
-  const Vector3d y = JJt.inverse() * x;
+  const Vector3d y = DampedInverse(J) * x;
   return J.transpose() * y;
 }
 
