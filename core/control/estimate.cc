@@ -101,7 +101,8 @@ const Estimate& StateEstimator::Update(const SensorReading& reading,
   }
   const JointVector dq = Gain(dt_, parameters.joint_filter_s) * (reading.q - e.q);
   e.q += dq;
-  const RigidStep step = StepOf(dq, holding);
+  const bool followed = reading.object_rate_hz > 0 || reading.taxel_pitch_m > 0;
+  const RigidStep step = followed ? StepOf(dq, holding) : RigidStep();
   ForwardKinematics(*hand_, e.q, &e.kinematics);
   UpdatePose(reading, parameters, step);
 

@@ -12,9 +12,10 @@ namespace regrasp {
 
 class FeltFriction {
  public:
-  /// One tick. `torque`: of the joints, less what bears the hand's weight [N m].
+  /// One tick of `dt` [s]. `torque`: of the joints [N m, model order], under `gravity_W` [m/s²].
   void Update(const HandModel& hand, const Estimate& estimate, const FingerTasks& tasks,
-              const JointVector& torque, const ControlParameters& parameters, double dt);
+              const JointVector& torque, const Vector3d& gravity_W,
+              const ControlParameters& parameters, double dt);
   /// Fingers have slid for long enough.
   bool known(const ControlParameters& parameters) const {
     return felt_s_ >= parameters.feel_enough_s;

@@ -21,9 +21,8 @@ void Session::Impl::Feel() {
 
 void Session::Impl::FeelFriction() {
   const bool known = felt_friction.known(parameters.control);
-  const JointVector weight =
-      GravityTorque(hand, estimator.estimate().kinematics, parameters.gravity_W);
-  felt_friction.Update(hand, estimator.estimate(), tasks, torque - weight, parameters.control, dt);
+  felt_friction.Update(hand, estimator.estimate(), tasks, torque, parameters.gravity_W,
+                       parameters.control, dt);
   if (known || !felt_friction.known(parameters.control)) return;
   CountOn();
   log.Emit(tick, EventKind::kFriction, -1, felt_friction.felt(),

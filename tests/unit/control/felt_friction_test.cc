@@ -8,6 +8,7 @@ namespace regrasp {
 namespace {
 
 constexpr double kDt = 0.001;
+const Vector3d kGravity(0.5, 9, -3);
 
 /// A hand whose ring finger slides with `speed` [m/s] over an object, its torques those of a tip
 /// that is pushed along with `tangential` [N] and pressed on with 0.3 N, and of its joints'
@@ -40,9 +41,10 @@ struct Scene {
     const Vector3d along = RotationFromZ(f.normal_W).col(0);
     const Eigen::VectorXd push = f.J.transpose() * (tangential * along - 0.3 * f.normal_W);
     const auto& joints = hand.fingers[static_cast<std::size_t>(finger)].joints;
+    torque = GravityTorque(hand, estimate.kinematics, kGravity);
     for (std::size_t k = 0; k < joints.size(); ++k) {
       const auto j = static_cast<std::size_t>(joints[k]);
-      torque[joints[k]] =
+      torque[joints[k]] +=
           push[static_cast<Eigen::Index>(k)] + hand.joints[j].damping * rate[joints[k]];
     }
   }
@@ -51,7 +53,7 @@ struct Scene {
   void Run(double seconds, FeltFriction* friction) {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       estimate.q += rate * kDt;
-      friction->Update(hand, estimate, tasks, torque, ControlParameters(), kDt);
+      friction->Update(hand, estimate, tasks, torque, kGravity, ControlParameters(), kDt);
     }
   }
 };
