@@ -89,7 +89,7 @@ class Maker {
     CheckOutput();
     Read();
     if (!object_.empty()) ReadObject();
-    const int searches = all_.num_fingers() <= kFewFingers ? kSearches : 1;
+    const int searches = all_.num_fingers() < kFewestToRegrasp ? kSearches : 1;
     for (int k = 0; k < searches; ++k)
       for (const double size_mm : sizes_mm_) Search(0, size_mm, k);
     for (int out = 1; out <= 2; ++out)

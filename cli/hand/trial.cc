@@ -41,7 +41,7 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
   trial.moved_m = (session.truth().p_WO - p).norm();
   Frame frame;
   session.Snapshot(&frame, false);
-  const bool none_leaves = model.hand.num_fingers() <= kFewFingers;
+  const bool none_leaves = model.hand.num_fingers() < kFewestToRegrasp;
   trial.margin_n = none_leaves ? frame.stability.load_margin : 1e9;
   for (int f = 0; !none_leaves && f < model.hand.num_fingers(); ++f)
     trial.margin_n =

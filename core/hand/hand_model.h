@@ -59,6 +59,9 @@ struct Finger {
   double tip_radius = 0;  ///< [m]
 };
 
+/// Of a hand of fewer fingers none can leave an object: the others would not hold it.
+inline constexpr int kFewestToRegrasp = 4;
+
 struct HandModel {
   std::string name;
   std::vector<Link> links;  ///< links[0] is the palm, fixed to the world; parents before children

@@ -246,7 +246,7 @@ void Judge(const HandModel& hand, const BallTask& task, double enough, BallGrasp
   double others = 1e9;
   for (int f = 0; f < n; ++f)
     if (f != c->opposing) others = std::min(others, c->margin_without[static_cast<std::size_t>(f)]);
-  const bool none_leaves = n <= kFewFingers;
+  const bool none_leaves = n < kFewestToRegrasp;
   const double one_less = none_leaves ? c->load_margin : *least;
   if (none_leaves) others = c->load_margin;
   c->score += 2.0 * std::min(one_less, 0.3) / 0.3 + std::min(one_less, 1.5) +

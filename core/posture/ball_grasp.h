@@ -13,9 +13,6 @@ namespace regrasp {
 /// Leaves 9 mm to a ball 18 mm larger across [m].
 inline constexpr double kOpenGap = 0.018;
 
-/// Of so many fingers or fewer none can leave: what counts is the margin with all of them.
-inline constexpr int kFewFingers = 3;
-
 /// What is grasped, and how contacts are judged.
 struct BallTask {
   double radius = 0.025;                                    ///< [m]

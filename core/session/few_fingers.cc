@@ -3,14 +3,9 @@
 #include <cmath>
 
 namespace regrasp {
-namespace {
-
-constexpr int kEnough = 4;  // fingers, for one to leave
-
-}  // namespace
 
 Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command) {
-  if (hand.num_fingers() >= kEnough) return {};
+  if (hand.num_fingers() >= kFewestToRegrasp) return {};
   if (command.type == CommandType::kExplore)
     return {Verdict::Kind::kBadState,
             "exploring needs a hand of four fingers or more: without the one that explores the "
@@ -26,7 +21,7 @@ Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const 
 
 Verdict CheckFingers(const HandModel& hand, const Parameters& before, const Parameters& after,
                      JobMethod running) {
-  if (hand.num_fingers() >= kEnough || running != JobMethod::kRotate ||
+  if (hand.num_fingers() >= kFewestToRegrasp || running != JobMethod::kRotate ||
       after.gait.step_rad >= before.gait.step_rad)
     return {};
   return {Verdict::Kind::kBadState,
