@@ -217,6 +217,25 @@ void Layout::DrawLegends(Canvas* canvas, std::span<const LegendGroup> groups) co
           10;
 }
 
+std::array<Box, 2> TwoBoxes(const Canvas& canvas, const Layout& layout, double top, double under) {
+  if (canvas.narrow()) {
+    constexpr double kGap = 10, kMargin = 14;
+    const double height = (layout.bottom - top - kGap) / 2;
+    const double width = canvas.width() - 2 * kMargin;
+    return {Box(kMargin, top, width, height), Box(kMargin, top + height + kGap, width, height)};
+  }
+  constexpr double kGap = 20;
+  const double width = (layout.left + layout.width - 2 * kGap) / 2;
+  const double height = canvas.height() - top - under;
+  return {Box(kGap, top, width, height), Box(2 * kGap + width, top, width, height)};
+}
+
+void DrawBorder(Canvas* canvas, const Box& box) {
+  const std::vector<Point2> corners = {
+      box.tl(), {box.br().x, box.y}, box.br(), {box.x, box.br().y}, box.tl()};
+  canvas->Polyline(corners, {kLightGrey, 1});
+}
+
 double DrawTitle(Canvas* canvas, const std::string& title, const std::string& facts) {
   const bool narrow = canvas->narrow();
   if (!canvas->with_title()) return narrow ? 14 : 104;

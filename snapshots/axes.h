@@ -2,6 +2,7 @@
 
 /// Axes with 1-2-5 ticks, panels and curves. Internal to snapshots/.
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <span>
@@ -87,6 +88,17 @@ struct Layout {
   Layout(const Canvas& canvas, std::span<const LegendGroup> groups, double axis_room = kXAxis);
   void DrawLegends(Canvas* canvas, std::span<const LegendGroup> groups) const;
 };
+
+/// A direction of view and what it is called.
+struct Side {
+  Vector3d to_viewer;
+  const char* name;
+};
+/// Where two views of equal size go: side by side from `top` to `under` above the lower edge, or
+/// one below the other where the sheet is narrow.
+std::array<Box, 2> TwoBoxes(const Canvas& canvas, const Layout& layout, double top, double under);
+/// A thin line about a view.
+void DrawBorder(Canvas* canvas, const Box& box);
 
 /// Title and facts at the top of the sheet; long facts are set smaller, then in several lines.
 /// Returns the y below them; without a title the upper margin.

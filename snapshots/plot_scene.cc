@@ -15,8 +15,8 @@ namespace regrasp {
 namespace {
 
 constexpr Colour kPalm{214, 214, 218}, kObjectLight{244, 236, 212}, kObjectDark{222, 205, 160};
-constexpr double kTop = 104, kGap = 20;  // of the views on a wide sheet
-constexpr double kNarrowHeight = 1050, kNarrowMargin = 14, kNarrowGap = 10;
+constexpr double kTop = 104;  // of the views on a wide sheet
+constexpr double kNarrowHeight = 1050, kNarrowGap = 10;
 constexpr double kFilmDetail = 0.75;  // of the bodies; 1.5 x 1.5 samples a pixel instead of 2 x 2
 constexpr double kScaleBar = 0.02;    // [m]
 constexpr double kOutOfView = 0.15;   // an object this far from every fingertip is left out [m]
@@ -304,25 +304,8 @@ std::vector<LegendGroup> Legends(const Frame& frame, const HandModel& hand, cons
   return {{"contact force, true", fingers, kTop + 4}, {"", arrow}, {"balance", balance}};
 }
 
-struct Side {
-  Vector3d to_viewer;
-  const char* name;
-};
 const std::array<Side, 2> kSides = {Side{{0.22, -1, 0.16}, "from the palm's side"},
                                     Side{{1, -0.32, 0.12}, "from the thumb's side"}};
-
-/// Where the two views go: side by side, or one below the other on a narrow sheet.
-std::array<Box, 2> Boxes(const Canvas& canvas, const Layout& layout, double top) {
-  if (canvas.narrow()) {
-    const double height = (layout.bottom - top - kNarrowGap) / 2;
-    const double width = canvas.width() - 2 * kNarrowMargin;
-    return {Box(kNarrowMargin, top, width, height),
-            Box(kNarrowMargin, top + height + kNarrowGap, width, height)};
-  }
-  const double width = (layout.left + layout.width - 2 * kGap) / 2;
-  const double height = canvas.height() - kTop - 24;
-  return {Box(kGap, kTop, width, height), Box(2 * kGap + width, kTop, width, height)};
-}
 
 /// Up on the sheet is up in the world where the direction of view allows it, else towards the
 /// fingers.
@@ -357,7 +340,7 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
     for (const FingerFrame& finger : frame.fingers)
       middle += finger.true_tip_W / static_cast<double>(frame.fingers.size());
   }
-  const std::array<Box, 2> boxes = Boxes(*canvas, layout, top);
+  const std::array<Box, 2> boxes = TwoBoxes(*canvas, layout, canvas->narrow() ? top : kTop, 24);
   for (std::size_t i = 0; i < kSides.size(); ++i) {
     const Box& box = boxes[i];
     ViewPainter view(canvas, box, bodies, kSides[i].to_viewer,
@@ -373,9 +356,7 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
     view.Directions(frame.gravity_W);
     view.Scales(middle, forces.scale(), forces.metres_per_newton());
     canvas->Unclip();
-    const std::vector<Point2> corners = {
-        box.tl(), {box.br().x, box.y}, box.br(), {box.x, box.br().y}, box.tl()};
-    canvas->Polyline(corners, {kLightGrey, 1});
+    DrawBorder(canvas, box);
     canvas->Text({box.x + box.width / 2, box.y + 20}, kSides[i].name,
                  {.size = 18, .colour = kGrey, .align_x = AlignX::kCentre, .halo = 2});
   }

@@ -11,31 +11,14 @@
 namespace regrasp {
 namespace {
 
-constexpr double kGap = 20;      // of the views on a wide sheet
 constexpr double kHeight = 620;  // of a wide sheet on paper
-constexpr double kNarrowHeight = 1230, kNarrowGap = 10, kNarrowMargin = 14;
+constexpr double kNarrowHeight = 1230, kNarrowGap = 10;
 constexpr Colour kUnfelt{226, 226, 226};
 constexpr double kTouchRadius = 2.2;
 
-struct Side {
-  Vector3d to_viewer;
-  const char* name;
-};
 /// Opposite, so that every place is seen.
 const std::array<Side, 2> kSides = {Side{{-0.85, -1.2, 0.72}, "from −x, −y, +z"},
                                     Side{{0.85, 1.2, -0.72}, "from +x, +y, −z"}};
-
-std::array<Box, 2> Boxes(const Canvas& canvas, const Layout& layout, double top) {
-  if (canvas.narrow()) {
-    const double height = (layout.bottom - top - kNarrowGap) / 2;
-    const double width = canvas.width() - 2 * kNarrowMargin;
-    return {Box(kNarrowMargin, top, width, height),
-            Box(kNarrowMargin, top + height + kNarrowGap, width, height)};
-  }
-  const double width = (layout.left + layout.width - 2 * kGap) / 2;
-  const double height = canvas.height() - top - kGap;
-  return {Box(kGap, top, width, height), Box(2 * kGap + width, top, width, height)};
-}
 
 LegendEntry Swatch(std::string text, Colour colour) {
   return {std::move(text), [colour](Canvas* c, Point2 m) {
@@ -90,7 +73,7 @@ void DrawShape(const PlotInput& input, const std::string& path) {
 
   const ObjectMesh mesh = MeshOf(input.object);
   const auto lines = ShapeLines(mesh);
-  const std::array<Box, 2> boxes = Boxes(canvas, layout, top);
+  const std::array<Box, 2> boxes = TwoBoxes(canvas, layout, top, 20);
   for (std::size_t i = 0; i < kSides.size(); ++i) {
     const Box& box = boxes[i];
     const double room = std::min(box.width - 30, box.height - 70);
@@ -107,9 +90,7 @@ void DrawShape(const PlotInput& input, const std::string& path) {
     canvas.Text({box.br().x - 14, box.y + 20}, kSides[i].name,
                 {.size = 18, .colour = kGrey, .align_x = AlignX::kRight, .halo = 2});
     canvas.Unclip();
-    const std::vector<Point2> corners = {
-        box.tl(), {box.br().x, box.y}, box.br(), {box.x, box.br().y}, box.tl()};
-    canvas.Polyline(corners, {kLightGrey, 1});
+    DrawBorder(&canvas, box);
   }
   canvas.Save();
 }
