@@ -14,19 +14,22 @@
 namespace regrasp {
 namespace {
 
+/// Torques of either sign for 0.3 s, far from any object.
+void Drive(World* world) {
+  JointVector torque(Shadow().hand.num_joints());
+  for (int i = 0; i < torque.size(); ++i) torque[i] = 0.02 * (i % 2 ? 1 : -1);
+  world->SetGravity(GraspGravity());
+  world->SetTorque(torque);
+  for (int k = 0; k < 300; ++k) ASSERT_EQ(world->Step(), StepStatus::kOk);
+}
+
 TEST(World, MergedAndPlainHandMoveAlike) {
   const JointVector q0 = GraspPosture(Shadow().hand);
   WorldConfig merged = Config(Stepper::kExact), plain = merged;
   plain.merge_universal = false;
   World a(Shadow().hand, Shadow().object, merged, q0, At(0, -0.5, 0));
   World b(Shadow().hand, Shadow().object, plain, q0, At(0, -0.5, 0));
-  JointVector torque(Shadow().hand.num_joints());
-  for (int i = 0; i < torque.size(); ++i) torque[i] = 0.02 * (i % 2 ? 1 : -1);
-  for (World* world : {&a, &b}) {
-    world->SetGravity(GraspGravity());
-    world->SetTorque(torque);
-    for (int k = 0; k < 300; ++k) ASSERT_EQ(world->Step(), StepStatus::kOk);
-  }
+  for (World* world : {&a, &b}) ASSERT_NO_FATAL_FAILURE(Drive(world));
   const double moved = (a.state().q - q0).cwiseAbs().maxCoeff();
   EXPECT_GT(moved, 0.1);
   // They differ in where the rotors of merged joints act while the parent moves, and by the inertia
@@ -48,13 +51,7 @@ TEST(World, FreeHandMovesAlikeWithBothSteppers) {
     fast.merge_universal = exact.merge_universal = merge;
     World a(Shadow().hand, Shadow().object, fast, q0, At(0, -0.5, 0));
     World b(Shadow().hand, Shadow().object, exact, q0, At(0, -0.5, 0));
-    JointVector torque(Shadow().hand.num_joints());
-    for (int i = 0; i < torque.size(); ++i) torque[i] = 0.02 * (i % 2 ? 1 : -1);
-    for (World* world : {&a, &b}) {
-      world->SetGravity(GraspGravity());
-      world->SetTorque(torque);
-      for (int k = 0; k < 300; ++k) ASSERT_EQ(world->Step(), StepStatus::kOk);
-    }
+    for (World* world : {&a, &b}) ASSERT_NO_FATAL_FAILURE(Drive(world));
     const double moved = (a.state().q - q0).cwiseAbs().maxCoeff();
     EXPECT_GT(moved, 0.1);
     // Bodies that turn about joints leave them by h² w² r / 2 per step and are drawn back: some
