@@ -50,8 +50,25 @@ class Client {
 
 void Print(const std::string& name, std::vector<double> times_s) {
   std::ranges::sort(times_s);
-  std::printf("%-18s %10.1f %10.1f %10.1f\n", name.c_str(), 1e6 * times_s[times_s.size() / 2],
+  std::printf("%-24s %10.1f %10.1f %10.1f\n", name.c_str(), 1e6 * times_s[times_s.size() / 2],
               1e6 * times_s[times_s.size() * 99 / 100], 1e6 * times_s.back());
+}
+
+void Requests(const regrasp::DaemonConfig& config, int count) {
+  regrasp::Daemon daemon(config);
+  std::thread thread([&] { daemon.Run(false); });
+  {
+    Client client(config.socket);
+    client.RoundTrip("grasp");
+    for (const char* method :
+         {"version", "status", "contacts", "quality", "joints", "truth", "param.get", "describe"}) {
+      std::vector<double> times;
+      for (int i = 0; i < count; ++i) times.push_back(client.RoundTrip(method));
+      Print(method, std::move(times));
+    }
+  }
+  daemon.Stop();
+  thread.join();
 }
 
 void Checkpoints(regrasp::DaemonConfig config, const std::string& object, int count) {
@@ -85,21 +102,8 @@ int main(int argc, char** argv) {
   config.socket = directory + "/bench.sock";
   config.output_dir = directory;
   config.speed = "max";
-  regrasp::Daemon daemon(config);
-  std::thread thread([&] { daemon.Run(false); });
-  {
-    Client client(config.socket);
-    client.RoundTrip("grasp");
-    std::printf("%-18s %10s %10s %10s\n", "method", "median us", "p99 us", "max us");
-    for (const char* method :
-         {"version", "status", "contacts", "quality", "joints", "truth", "param.get", "describe"}) {
-      std::vector<double> times;
-      for (int i = 0; i < count; ++i) times.push_back(client.RoundTrip(method));
-      Print(method, std::move(times));
-    }
-  }
-  daemon.Stop();
-  thread.join();
+  std::printf("%-24s %10s %10s %10s\n", "method", "median us", "p99 us", "max us");
+  Requests(config, count);
   for (const char* object : {"sphere", "zoo_peanut_lying", "egg"})
     Checkpoints(config, object, std::max(1, count / 20));
   std::filesystem::remove_all(directory);

@@ -63,9 +63,10 @@ class ObjectReader {
     if (collisions_.empty())
       problems_.Add(root.line, "{}: has no <collision>; an object has at least one", element_);
     problems_.ThrowIfAny();
-    if (root.second_inertial_line > 0 && report_)
-      report_->warnings.push_back({problems_.file(), root.second_inertial_line, element_,
-                                   "a second <inertial> is not read"});
+    for (const UrdfLink& link : file_.links)
+      if (link.second_inertial_line > 0 && report_)
+        report_->warnings.push_back({problems_.file(), link.second_inertial_line,
+                                     LinkElement(link.name), "a second <inertial> is not read"});
     inertial_ = *inertial;
     inertial_.X_LI = X_OL * inertial_.X_LI;
     object_.name = file_.name;

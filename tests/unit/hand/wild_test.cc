@@ -290,9 +290,16 @@ TEST_F(WildTest, LinksThatAreFixedToEachOtherAreOneBody) {
 <inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="1e-5"/></inertial>
 <collision><geometry><box size="0.04 0.04 0.04"/></geometry></collision></link><link name="lid">
 <inertial><mass value="0.01"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>
+<inertial><mass value="7"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
 <collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.04 0.02"/></geometry></collision></link>)" +
             fixed("world", "body", "0.5 0 0") + fixed("body", "lid", "0 0 0.02") + "</robot>");
-  const ObjectModel object = LoadObject((root_ / "objects/parts.urdf").string(), {}, {});
+  ModelReport report;
+  const ObjectModel object = LoadObject((root_ / "objects/parts.urdf").string(), {}, {}, &report);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(
+      report.warnings[0].Line().find("parts.urdf:5: link \"lid\": a second <inertial> is not read"),
+      std::string::npos)
+      << report.warnings[0].Line();
   EXPECT_DOUBLE_EQ(object.mass, 0.04);
   EXPECT_NEAR(ObjectSolid(object).volume, 0.04 * 0.04 * 0.06, 1e-9);
   // About the common centre, 5 mm above the body's.
