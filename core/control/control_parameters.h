@@ -36,6 +36,9 @@ struct ControlParameters {
   double min_normal_force = 0.1;   ///< [N]
   double max_normal_force = 4.0;   ///< [N]
   double residual_limit = 0.1;  ///< the integrals stop while the QP misses the wrench by more [N]
+  double yield_s = 0.05;        ///< ... and the correction of the pose fades in so long; 0: never
+  double resume_s = 0.2;        ///< it comes back in so long [s]
+  double mass_filter_s = 1.0;   ///< mass borne lately: time constant [s]
   // Joints.
   double posture_stiffness = 0.1;  ///< in the null space of the contact force [N m/rad]
   double pinv_damping = 0.004;     ///< lambda of the damped pseudo-inverse [m]

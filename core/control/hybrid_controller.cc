@@ -172,7 +172,8 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
 
   if (holding) {
     wrench_.Move(motion.v_W, motion.w_W, dt_);
-    wrench_.Update(estimate, parameters, dt_, qp_.residual() > parameters.residual_limit);
+    wrench_.Update(estimate, gravity_W, parameters, dt_,
+                   qp_.residual() > parameters.residual_limit);
     problem_.force = wrench_.force() - carried_force;
     problem_.torque = wrench_.torque() - carried_torque;
     problem_.torque_scale = estimate.object_scale;
