@@ -64,7 +64,7 @@ ActivityContext Session::Impl::Context() {
                         parameters.gravity_W,
                         control,
                         parameters.exploration,
-                        parameters.gait,
+                        gait,
                         dt};
   return {now, tick, seed, parameters, start, controller, tasks, world, judge, log, job};
 }
@@ -113,6 +113,7 @@ void Session::Impl::Tick() {
   times.sense_s = clock.Lap();
 
   Feel();
+  FeelPush();
   CountOn();
   monitor.Update(Context().now);
   WatchContacts();
