@@ -1,6 +1,7 @@
 #pragma once
 
-/// Boxes, spheres, cylinders and capsules as closed triangle meshes, for objects made of several of them.
+/// Boxes, spheres, cylinders and capsules as closed triangle meshes, for objects made of several of
+/// them.
 
 #include "core/hand/mesh.h"
 
