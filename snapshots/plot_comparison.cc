@@ -11,12 +11,13 @@
 namespace regrasp {
 namespace {
 
-/// The stretch that explores: from the first to the last frame in which a finger does. The whole
-/// run when none does.
-std::span<const Frame> Exploration(std::span<const Frame> frames) {
-  const auto explores = [](const Frame& frame) { return frame.exploration.active; };
+/// The stretch that explores: from the first to the last frame in which a finger does. Throws
+/// std::runtime_error when none does.
+std::span<const Frame> Exploration(std::span<const Frame> frames, const std::string& label) {
+  const auto explores = [](const Frame& frame) { return ExploringFinger(frame) >= 0; };
   const auto first = std::find_if(frames.begin(), frames.end(), explores);
-  if (first == frames.end()) return frames;
+  if (first == frames.end())
+    throw std::runtime_error(label + ": no finger explores, there is nothing to compare");
   const auto last = std::find_if(frames.rbegin(), frames.rend(), explores).base();
   return {first, last};
 }
@@ -41,8 +42,8 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
   std::string fingers;
   for (const LabelledRun& run : runs) {
     Run c;
-    c.frames = Exploration(Newest(run.frames, options.last_s, path));
-    int finger = std::max(0, ExploringFinger(c.frames.front()));
+    c.frames = Exploration(Newest(run.frames, options.last_s, path), run.label);
+    const int finger = ExploringFinger(c.frames.front());
     const double start = c.frames.front().time_s;
     c.t = Column(c.frames, [&](const Frame& frame) { return frame.time_s - start; });
     c.phi_true =

@@ -221,9 +221,8 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   std::array<LegendGroup, 3> legends = Legends(note, hand, limit);
   const Layout layout(canvas, legends);
   const double left = layout.left, width = layout.width, bottom = layout.bottom;
-  const double y =
-      DrawHead(&canvas, options.title.empty() ? note.cause : options.title,
-               fmt::format("tick {} · {}", note.tick, Facts(frames, hand, options.object_name)));
+  const double y = DrawHead(&canvas, options.title.empty() ? note.cause : options.title,
+                            fmt::format("tick {} · {}", note.tick, Facts(frames, hand, options)));
 
   // Strips: state, gait (while there is one), every finger. Then the labels, then the panels.
   const bool gait = std::ranges::any_of(frames, [](const Frame& f) { return f.gait.active; });

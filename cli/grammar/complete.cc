@@ -1,10 +1,12 @@
 #include "cli/grammar/complete.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "cli/client/context.h"
 #include "cli/grammar/grammar.h"
+#include "core/hand/model_path.h"
 
 namespace regrasp::cli {
 namespace {
@@ -41,11 +43,38 @@ constexpr KnownElsewhere kKnownElsewhere[] = {
     {"plot", "run", "record.list", "file"},
     {"experiment exploration", "finger", "explore", "finger"}};
 
+/// Options whose words the daemon checks: as another method of the wire allows them, or `words`.
+struct CheckedByDaemon {
+  std::string_view key, method, param;
+  std::array<std::string_view, 3> words = {};
+};
+constexpr CheckedByDaemon kCheckedByDaemon[] = {
+    {"noise", "noise.set", "preset"},
+    {"criterion", "explore", "criterion"},
+    {"estimator", "explore", "estimator"},
+    {"clock", "", "", {"continuous", "lockstep"}},
+    {"stepper", "", "", {"auto", "exact", "fast"}},
+};
+
+/// The models in the usual places that may stand for this argument. A name goes without a daemon.
+std::vector<std::string> ModelNames(const CommandSpec& command, const Arg& arg) {
+  const bool of_model = arg.metavar == "NAME|FILE" || arg.key == "file" || arg.key == "objects";
+  const bool hand = arg.key == "hand" || command.words == "hand check";
+  const bool object = arg.key == "object" || arg.key == "objects" || command.words == "object show";
+  if (!of_model || !(hand || object)) return {};
+  try {
+    return ListModels(ModelSearchPath(), hand ? "hands" : "objects");
+  } catch (const ModelError&) {  // $REGRASP_MODELS_DIR is no directory
+    return {};
+  }
+}
+
 /// The words read from left to right: how far the command goes, and what is still to come.
 struct Reader {
   std::string path;                      ///< "noise set"
   const CommandSpec* command = nullptr;  ///< once the path is one
   std::size_t positionals = 0;           ///< already given
+  std::string last_positional = {};      ///< "gait.preset" of `param set gait.preset`
   const Arg* pending = nullptr;          ///< the option whose value comes next
 
   std::span<const Arg> Args() const {
@@ -67,6 +96,7 @@ struct Reader {
     const auto found = FindCommands(longer);
     if (command || found.empty()) {
       ++positionals;
+      last_positional = word;
     } else {
       path = longer;
       if (found.front()->words == longer) command = found.front();
@@ -96,9 +126,24 @@ struct Collector {
       Add(rest.substr(0, rest.find(' ')), last ? command->sentence : "");
     }
   }
-  void Values(const CommandSpec* command, const Arg& arg, const AskNames& ask) {
+  void Words(const CommandSpec& command, const Arg& arg) {
+    for (const std::string& name : ModelNames(command, arg)) Add(name, arg.help);
+    for (const CheckedByDaemon& known : kCheckedByDaemon) {
+      if (arg.wire || known.key != arg.key) continue;
+      for (const std::string_view word : known.words)
+        if (!word.empty()) Add(std::string(word), arg.help);
+      if (!known.method.empty())
+        for (const auto& word : FindParam(*FindMethod(known.method), known.param)->values)
+          Add(std::string(word), arg.help);
+    }
+  }
+  void Values(const Reader& reader, const Arg& arg, const AskNames& ask) {
+    const CommandSpec* command = reader.command;
     for (const std::string& value : arg.values) Add(value, arg.help);
     if (!arg.values.empty()) return;
+    if (command) Words(*command, arg);
+    if (arg.kind == ArgKind::kParameterValue)
+      for (const std::string& word : ask("param.get", reader.last_positional)) Add(word, arg.help);
     if (arg.metavar.find("FILE") != std::string::npos || arg.metavar == "DIR" ||
         arg.metavar == "PATH")
       candidates.files = true;
@@ -123,7 +168,7 @@ Candidates Complete(const std::vector<std::string>& words, const std::string& cu
   for (const std::string& word : words) reader.Read(word);
   Collector collector{current, {}};
   if (reader.pending) {
-    collector.Values(reader.command, *reader.pending, ask);
+    collector.Values(reader, *reader.pending, ask);
   } else if (current.starts_with("-")) {
     collector.Flags(reader.Args());
     collector.Flags(GlobalArgs());
@@ -140,8 +185,7 @@ Candidates Complete(const std::vector<std::string>& words, const std::string& cu
   } else {
     std::size_t index = 0;
     for (const Arg& arg : reader.command->args)
-      if (arg.flags.empty() && index++ == reader.positionals)
-        collector.Values(reader.command, arg, ask);
+      if (arg.flags.empty() && index++ == reader.positionals) collector.Values(reader, arg, ask);
   }
   return std::move(collector.candidates);
 }
@@ -158,6 +202,12 @@ AskNames AskDaemon(const std::string& socket, double patience_s) {
       if (method.ends_with(".list")) {
         const Json list = client.Call(method, Json::object(), left());
         for (const Json& row : *list.begin()) names.push_back(Plain(At(row, param.c_str())));
+        return names;
+      }
+      if (method == "param.get") {
+        const Json row = client.Call(method, {{"name", param}}, left());
+        for (const auto& word : row.value("words", Json::array())) names.push_back(word);
+        if (At(row, "type") == "boolean") names = {"false", "true"};
         return names;
       }
       const Json answer = client.Call("describe", {{"method", method}}, left());

@@ -17,7 +17,8 @@ struct Candidates {
   bool files = false;            ///< a file name may stand here
 };
 
-/// The names that only a daemon knows for parameter `param` of `method` ("explore", "finger").
+/// The names that only a daemon knows for parameter `param` of `method` ("explore", "finger"); of
+/// "param.get" the words that the control parameter `param` takes.
 using AskNames =
     std::function<std::vector<std::string>(const std::string& method, const std::string& param)>;
 

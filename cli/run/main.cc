@@ -29,6 +29,10 @@ OnState Pace(const Command& command) {
   };
 }
 
+const char* EndText(bool complete) {
+  return complete ? "" : "\n  the file has no end: its writer was killed, or it was cut";
+}
+
 ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayResult& result,
                      const Json& differences, Json extra, const std::string& note) {
   const Segment& segment = file.segments[static_cast<std::size_t>(result.segment)];
@@ -61,8 +65,7 @@ ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayRe
   std::string text =
       fmt::format("{}: {}\n  {} commands, {:.3f} s ({} ticks), {} states compared{}", command.file,
                   verdict, result.commands, seconds, result.ticks, result.compared, note);
-  if (!file.complete) text += "\n  the file has no end: its writer was killed";
-  text += LossesText(file.lost);
+  text += EndText(file.complete) + LossesText(file.lost);
   if (!same_build)
     text += fmt::format("\n  recorded by {}\n  replayed by {}", segment.build, BuildIdentity());
   Print(command, json, text);
@@ -116,7 +119,7 @@ ExitCode ExportCommand(const Command& command) {
          {"lost", LossesJson(result.lost)}},
         fmt::format("{}: {} messages{}", options.out, result.messages,
                     options.format == "csv" ? fmt::format(" in {} files", result.files) : "") +
-            LossesText(result.lost));
+            EndText(result.complete) + LossesText(result.lost));
   return result.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 

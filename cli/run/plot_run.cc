@@ -81,20 +81,23 @@ Pictured LastJob(const std::string& path, double last_s) {
   return Execute(path, dt, starts.back(), end, true);
 }
 
-/// The last `count` explorations.
+/// The last `count` jobs in which a finger explored: others were refused.
 std::vector<Pictured> Explorations(const std::string& path, std::size_t count) {
   std::vector<McapChunk> chunks;
   const RunFile file = ReadJournals(path, &chunks);
   const Segment& segment = file.segments.back();
   std::vector<std::int64_t> starts = JobStarts(segment, true);
-  if (starts.size() < count)
-    throw std::runtime_error(fmt::format("{}: {} explorations in the last segment, {} are needed",
-                                         path, starts.size(), count));
-  starts.erase(starts.begin(), starts.end() - static_cast<std::ptrdiff_t>(count));
   const std::int64_t end = RunWindow(path, {}).end_tick();
   std::vector<Pictured> result;
-  for (const std::int64_t start : starts)
-    result.push_back(Execute(path, segment.journal->config.world.dt, start, end, true));
+  for (; !starts.empty() && result.size() < count; starts.pop_back()) {
+    Pictured one = Execute(path, segment.journal->config.world.dt, starts.back(), end, true);
+    const auto explores = [](const Frame& frame) { return frame.exploration.active; };
+    if (std::ranges::any_of(one.input.frames, explores))
+      result.insert(result.begin(), std::move(one));
+  }
+  if (result.size() < count)
+    throw std::runtime_error(fmt::format("{}: {} explorations in the last segment, {} are needed",
+                                         path, result.size(), count));
   return result;
 }
 

@@ -59,6 +59,12 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
         shape.a_L = shape.b_L = X.translation();
         break;
       case UrdfGeometry::Kind::kCylinder:
+        if (!fingertip && geometry.length < geometry.radius) {  // round ends would make it a ball
+          TriangleMesh disc = CylinderMesh(geometry.radius, geometry.length / 2);
+          for (Vector3d& v : disc.vertices) v = X * v;
+          shape = Fitted(in, geometry, disc, "<cylinder>", false);
+          break;
+        }
         shape.radius = geometry.radius;
         shape.a_L = X * Vector3d(0, 0, -geometry.length / 2);
         shape.b_L = X * Vector3d(0, 0, geometry.length / 2);

@@ -13,7 +13,9 @@ using Type = UrdfJoint::Type;
 
 void CheckLimits(const UrdfJoint& joint, const std::string& element, Problems* problems) {
   if (joint.limit_line == 0) {
-    problems->Add(joint.line, "{}: <limit> is missing; its effort is needed", element);
+    // URDF asks it of revolute joints only; the effort of others is as if not filled in.
+    if (joint.type == Type::kRevolute)
+      problems->Add(joint.line, "{}: <limit> is missing; its effort is needed", element);
     return;
   }
   if (joint.type == Type::kRevolute) {

@@ -124,24 +124,18 @@ class ObjectReader {
     // A homogeneous body has its centre of mass in its middle.
     facts_.p_LCom = options_.inertia_from_shape ? first.X_LG.translation() : PCom();
     const Matrix3d& R = first.X_LG.linear();
-    const bool turned = geometry.kind == Kind::kSphere     ? false
-                        : geometry.kind == Kind::kCylinder ? std::abs(R(2, 2)) < 1 - 1e-12
-                                                           : !R.isIdentity(1e-9);
-    if (collisions_.size() > 1 || geometry.kind == Kind::kMesh || turned ||
+    const bool whole =
+        geometry.kind == Kind::kSphere || (geometry.kind == Kind::kBox && R.isIdentity(1e-9));
+    if (collisions_.size() > 1 || !whole ||
         (first.X_LG.translation() - facts_.p_LCom).norm() > 1e-9)
       return ReadPieces();
     if (geometry.kind == Kind::kSphere) {
       object_.kind = ObjectModel::Kind::kSphere;
       object_.radius = object_.bounding_radius = geometry.radius;
-    } else if (geometry.kind == Kind::kBox) {
+    } else {
       object_.kind = ObjectModel::Kind::kBox;
       object_.half_extents = geometry.size / 2;
       object_.bounding_radius = object_.half_extents.norm();
-    } else {
-      object_.kind = ObjectModel::Kind::kCapsule;
-      object_.radius = geometry.radius;
-      object_.half_length = geometry.length / 2;
-      object_.bounding_radius = object_.half_length + object_.radius;
     }
     CheckSize();
   }
@@ -152,7 +146,7 @@ class ObjectReader {
       case UrdfGeometry::Kind::kSphere:
         return CapsuleMesh(geometry.radius, 0);
       case UrdfGeometry::Kind::kCylinder:
-        return CapsuleMesh(geometry.radius, geometry.length / 2);
+        return CylinderMesh(geometry.radius, geometry.length / 2);
       case UrdfGeometry::Kind::kBox:
         return BoxMesh(geometry.size);
       case UrdfGeometry::Kind::kMesh:

@@ -19,7 +19,7 @@ struct ObjectFacts {
 };
 
 /// Loads and checks an object: one link with its <collision> elements, of any pose and number:
-/// spheres, cylinders (read as capsules), boxes and closed meshes, which together are one body. A
+/// spheres, cylinders, boxes and closed meshes, which together are one body. A
 /// sphere, capsule or box alone, in the link's axes about the centre of mass, stays what it is;
 /// anything else becomes one mesh (round pieces by facets, primitive_mesh.h), and where pieces
 /// overlap the body is their union. The origin is moved to the centre of mass, and the link

@@ -16,6 +16,25 @@ TriangleMesh BoxMesh(const Vector3d& size) {
   return mesh;
 }
 
+TriangleMesh CylinderMesh(double radius, double half_length) {
+  const double corner = radius + kFacet / 2;
+  const double half_angle = std::acos(1 - std::min(0.5, kFacet / corner));
+  const int around = 4 * std::clamp(static_cast<int>(std::ceil(M_PI / 4 / half_angle)), 3, 120);
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, -half_length}, {0, 0, half_length}};
+  for (int i = 0; i < around; ++i) {
+    const double a = 2 * M_PI * i / around;
+    for (const double z : {-half_length, half_length})
+      mesh.vertices.emplace_back(corner * std::cos(a), corner * std::sin(a), z);
+    const int low = 2 + 2 * i, next = 2 + 2 * ((i + 1) % around);
+    mesh.triangles.emplace_back(0, next, low);
+    mesh.triangles.emplace_back(1, low + 1, next + 1);
+    mesh.triangles.emplace_back(low, next, low + 1);
+    mesh.triangles.emplace_back(next, next + 1, low + 1);
+  }
+  return mesh;
+}
+
 TriangleMesh CapsuleMesh(double radius, double half_length) {
   // A chord of the angle 2 a lies r (1 - cos a) inside the circle through its ends; the middle of a
   // facet that is bent in two directions twice that.

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Boxes, spheres and capsules as closed triangle meshes, for objects made of several of them.
+/// Boxes, spheres, cylinders and capsules as closed triangle meshes, for objects made of several of
+/// them.
 
 #include "core/hand/mesh.h"
 
@@ -12,6 +13,8 @@ inline constexpr double kFacet = 3e-5;
 
 /// `size` along x, y, z about the origin [m].
 TriangleMesh BoxMesh(const Vector3d& size);
+/// About the z axis, from -half_length to half_length [m].
+TriangleMesh CylinderMesh(double radius, double half_length);
 /// All points within `radius` of the segment of twice `half_length` along z [m]; a sphere where
 /// that is 0.
 TriangleMesh CapsuleMesh(double radius, double half_length);

@@ -4,8 +4,8 @@
 ///   - revolute and continuous joints; fixed joints merge their child into its parent; <mimic>
 ///   makes
 ///     a coupled joint (HandModel); a scenario may lock joints;
-///   - <sphere>, <box>, and <cylinder> read as a CAPSULE: the cylinder's axis is the segment, and
-///     round ends of the same radius are added (URDF has no capsule);
+///   - <sphere>, <box>, and <cylinder>, of a hand read as a CAPSULE: the cylinder's axis is the
+///     segment, and round ends of the same radius are added (URDF has no capsule);
 ///   - <mesh>: fitted by a capsule, sphere or box, its error reported;
 ///   - <visual>, <transmission>, <gazebo> and the like are ignored.
 /// Objects: object_loader.h.

@@ -150,8 +150,8 @@ class Checker {
       CheckMesh(node, values);
     } else {
       values.Add(node->GetLineNum(),
-                 "<collision> <geometry> <{}> is unknown; allowed are sphere, box, cylinder (read "
-                 "as a capsule), mesh",
+                 "<collision> <geometry> <{}> is unknown; allowed are sphere, box, cylinder, "
+                 "mesh",
                  kind);
     }
   }

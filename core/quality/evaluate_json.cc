@@ -180,7 +180,7 @@ std::string EvaluateJson(const std::string& text) {
   if (measures.load_margin) {
     const bool bounded = std::isfinite(*measures.load_margin);
     out["load_margin_n"] = nullptr;
-    if (bounded) out["load_margin_n"] = *measures.load_margin;
+    if (bounded) out["load_margin_n"] = *measures.load_margin + 0.0;  // 0, not -0
     out["load_margin_unbounded"] = !bounded;
   }
   if (NormalsPointAway(input))

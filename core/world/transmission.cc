@@ -1,8 +1,33 @@
 #include "core/world/transmission.h"
 
 #include <algorithm>
+#include <map>
 
 namespace regrasp {
+namespace {
+
+/// What resists a torque of the transmission of `coupled`: 1 / I = sum of c² / I_L over the links L
+/// whose rate of turn w_L stretches it by c w_L. A joint turns at the rate of its child less that
+/// of its parent, so that a driver which carries the coupled link counts (1 + r)² times. The links'
+/// own inertias, armature included, are a lower bound: what they carry adds to it.
+double ReducedInertia(const HandModel& hand, const Joint& coupled) {
+  const Joint& driver = hand.joints[static_cast<std::size_t>(coupled.driver)];
+  std::map<int, double> stretch;  // by link
+  stretch[coupled.child_link] += 1;
+  stretch[coupled.parent_link] -= 1;
+  stretch[driver.child_link] -= coupled.ratio;
+  stretch[driver.parent_link] += coupled.ratio;
+  double inverse = 0;
+  for (const auto& [l, c] : stretch) {
+    const Link& link = hand.links[static_cast<std::size_t>(l)];
+    if (link.parent_joint < 0) continue;
+    const Joint& joint = hand.joints[static_cast<std::size_t>(link.parent_joint)];
+    inverse += c * c / (joint.armature + joint.axis_J.dot(link.I_LCom * joint.axis_J));
+  }
+  return 1 / inverse;
+}
+
+}  // namespace
 
 Transmissions::Transmissions(const HandModel& hand, double stiffness, double damping, double dt)
     : plant_(hand), place_(hand.joints.size()), num_driven_(hand.num_joints()) {
@@ -17,17 +42,16 @@ Transmissions::Transmissions(const HandModel& hand, double stiffness, double dam
     plant_.joints.back().driver = -1;
   }
   for (Finger& finger : plant_.fingers) finger.joints.clear();
-  const auto inertia = [&](const Joint& joint) {
-    const Matrix3d& I = hand.links[static_cast<std::size_t>(joint.child_link)].I_LCom;
-    return joint.armature + joint.axis_J.dot(I * joint.axis_J);
-  };
+  std::vector<int> followers(hand.joints.size(), 0);
+  for (const Joint& joint : hand.joints)
+    if (joint.driver >= 0) ++followers[static_cast<std::size_t>(joint.driver)];
   for (std::size_t j = static_cast<std::size_t>(num_driven_); j < hand.joints.size(); ++j) {
     const Joint& joint = hand.joints[j];
-    const Joint& driver = hand.joints[static_cast<std::size_t>(joint.driver)];
-    const double both = 1 / (1 / inertia(joint) + joint.ratio * joint.ratio / inertia(driver));
-    springs_.push_back({place_[j], place_[static_cast<std::size_t>(joint.driver)], joint.ratio,
-                        joint.offset, std::min(stiffness, 0.2 * both / (dt * dt)),
-                        std::min(damping, 0.5 * both / dt)});
+    const auto driver = static_cast<std::size_t>(joint.driver);
+    const double share = ReducedInertia(hand, joint) / followers[driver];
+    springs_.push_back({place_[j], place_[driver], joint.ratio, joint.offset,
+                        std::min(stiffness, 0.8 * share / (dt * dt)),
+                        std::min(damping, 0.5 * share / dt)});
   }
   if (springs_.empty()) return;
   following_.resize(place_.size());

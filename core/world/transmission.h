@@ -16,9 +16,9 @@ namespace regrasp {
 class Transmissions {
  public:
   /// `stiffness` [N m/rad] and `damping` [N m s/rad] of each; less where the inertias are too small
-  /// for the step `dt` [s]. A spring K and a damper D between the inertias I1 and r² I2 are stable
-  /// in a semi-implicit Euler step where dt² K / I < 4 and dt D / I < 2, 1 / I = 1 / I1 + r² / I2;
-  /// at most a 20th and a quarter of that are taken.
+  /// for the step `dt` [s]. A spring K and a damper D are stable in a semi-implicit Euler step
+  /// where dt² K + 2 dt D < 4 I, I the inertia that resists the torque of the transmission; all
+  /// that follow one driver together take at most 0.8 I / dt² and 0.5 I / dt.
   Transmissions(const HandModel& hand, double stiffness, double damping, double dt);
 
   /// The same hand without couplings: joint i moves link i + 1. Fingers name no joints.

@@ -94,11 +94,14 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
   joint_torque = joint_damping = JointVector::Zero(hand.num_joints());
   // An explicit damper D and spring K are stable in a semi-implicit Euler step where h² K + 2 h D <
   // 4 I. The armature is a lower bound of I in any posture of any chain. Up to a quarter of the
-  // bound they are explicit, beyond it implicit, which is stable for any D and K.
+  // bound they are explicit, beyond it implicit, which is stable for any D and K. The exact step
+  // has the armature in its bodies, where a chain resists with less; beside elastic transmissions,
+  // which take their part of the bound, all of its joints are implicit.
+  const bool all = config.stepper == Stepper::kExact && transmissions.any();
   for (const Joint& joint : hand.joints)
-    implicit.push_back(config.dt * (joint.damping + kStopDamping) +
-                           config.dt * config.dt * kStopStiffness >
-                       joint.armature);
+    implicit.push_back(all || config.dt * (joint.damping + kStopDamping) +
+                                      config.dt * config.dt * kStopStiffness >
+                                  joint.armature);
   friction = object.friction;
   mass = object.mass;
   state.torque = joint_torque;

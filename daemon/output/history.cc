@@ -20,10 +20,11 @@ void History::Add(const Frame& frame) {
 }
 
 void History::AddToExploration(const std::shared_ptr<const Frame>& frame) {
-  const bool exploring = frame->state == SessionState::kExploring;
-  const bool another =
-      exploring && exploring_ && explorations_.back().back()->job.id != frame->job.id;
-  if (exploring && (!exploring_ || another)) {
+  const bool same = exploring_ && explorations_.back().back()->job.id == frame->job.id;
+  // Before its finger slides a job may make the grasp sure, and then be refused.
+  const bool exploring =
+      frame->state == SessionState::kExploring && (same || frame->exploration.active);
+  if (exploring && !same) {
     explorations_.emplace_back();
     if (explorations_.size() > kExplorations) explorations_.pop_front();
   }

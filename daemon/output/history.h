@@ -38,8 +38,9 @@ class History {
   std::vector<std::shared_ptr<const Frame>> Recent() const {
     return {recent_.begin(), recent_.end()};
   }
-  /// Frames of the last explorations (jobs, not those of a gait), oldest first, at most
-  /// kExplorations of them. They outlive a reset, so that runs can be compared.
+  /// Frames of the last explorations (jobs, not those of a gait) from where the finger begins to
+  /// slide, oldest first, at most kExplorations of them. They outlive a reset, so that runs can be
+  /// compared.
   std::vector<std::vector<std::shared_ptr<const Frame>>> Explorations() const {
     return {explorations_.begin(), explorations_.end()};
   }

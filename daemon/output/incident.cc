@@ -150,6 +150,8 @@ Incident MakeIncident(const IncidentSource& source, const HandModel& hand) {
   incident.dt = source.dt;
   incident.time_s = static_cast<double>(source.event.tick) * source.dt;
   incident.parameters = source.parameters;
+  incident.changed = source.changed;
+  incident.changed_text = source.changed_text;
   incident.object = source.object;
   const double since = incident.time_s - kIncidentWindow - 0.5 * source.dt;
   for (const auto& frame : source.frames)

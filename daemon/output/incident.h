@@ -27,8 +27,10 @@ struct IncidentSource {
   std::vector<Event> events;                         ///< of this run, oldest first
   JobRecord job;                                     ///< the newest; id 0: none
   Parameters parameters;                             ///< in force at the event
-  std::string object;                                ///< name of the object
-  double dt = 1e-3;                                  ///< of a tick [s]
+  Json changed = Json::object();  ///< {NAME: value} of those that differ from their defaults
+  std::string changed_text;       ///< the same for people
+  std::string object;             ///< name of the object
+  double dt = 1e-3;               ///< of a tick [s]
 };
 
 /// A finger that no longer touched the object at the end of the window.
@@ -45,6 +47,8 @@ struct Incident {
   std::vector<Event> events;                         ///< in the window, the event's tick included
   JobRecord job;                                     ///< the one it ended; id 0: none
   Parameters parameters;
+  Json changed = Json::object();  ///< {NAME: value} of those that differ from their defaults
+  std::string changed_text;       ///< the same for people
   std::string object;
   double dt = 1e-3;
 

@@ -100,6 +100,7 @@ Json IncidentJson(const Incident& incident, const HandModel& hand) {
           {"mass_kg", last ? Json(last->mass_kg) : Json()},
           {"friction", last ? Json(last->friction) : Json()},
           {"noise", last ? NoiseJson(last->noise) : Json()},
+          {"changed_parameters", incident.changed},
           {"limits",
            {{"drop_distance_m", incident.parameters.control.drop_distance},
             {"load_margin_n", incident.parameters.gait.margin_min},
@@ -131,6 +132,7 @@ PlotInput PictureOf(const Incident& incident, const HandModel& hand) {
   input.events = incident.events;
   input.hand = hand;
   input.options.object_name = incident.object;
+  input.options.changed = incident.changed_text;
   IncidentNote& note = input.incident;
   note.tick = incident.event.tick;
   note.time_s = incident.time_s;

@@ -136,6 +136,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
                          "regrasp plot quality");
     job->frames = job->incident->frames;
     job->options.object_name = job->incident->object;
+    job->options.changed = job->incident->changed_text;
   }
   if (job->frames.empty())
     throw RpcException(ErrorCode::kBadState, "nothing has happened yet", "regrasp grasp");

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/files/draft.h"
+#include "core/journal/provenance.h"
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
 #include "daemon/output/output_file.h"
@@ -193,6 +194,8 @@ void Service::RecordIncident(const Event& event) {
   source.events = history_.Events();
   source.job = newest_.frame.job;
   source.parameters = accepted_.parameters;
+  source.changed = ChangedParameters();
+  source.changed_text = ChangedText(accepted_.parameters, journal().config.model);
   source.object = accepted_.object->name;
   source.dt = dt();
   const auto incident = std::make_shared<const Incident>(MakeIncident(source, hand()));

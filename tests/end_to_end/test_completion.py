@@ -67,6 +67,14 @@ class Names(DaemonCase):
                 self.assertEqual(offered, [wanted])
 
 
+    def test_the_daemon_knows_the_words_of_a_parameter(self):
+        deadline = time.monotonic() + HANG_S
+        for words, wanted in [(["param", "set", "gait.preset", ""], ["paper", "planned"]), (["param", "set", "gait.preset", "pl"], ["planned"]),
+                              (["param", "set", "gait.plan", ""], ["false", "true"]), (["param", "set", "object.friction", ""], [])]:
+            with self.subTest(words):
+                while (offered := sorted(self.offered(*words, REGRASP_SOCKET=str(self.socket)))) != wanted:
+                    self.assertLess(time.monotonic(), deadline, offered)
+
     def test_the_daemon_knows_checkpoints_jobs_and_run_files(self):
         self.expect(0, "record", "start", "turn.mcap")
         self.expect(0, "grasp", "--wait")
@@ -96,6 +104,22 @@ class Patience(Case):
         done = subprocess.run([REGRASP, "__complete", "explore", "ring", "--estimator", ""], env=environment(REGRASP_SOCKET=str(self.socket)),
                               capture_output=True, text=True, timeout=HANG_S, check=True)
         self.assertEqual([line.split("\t")[0] for line in done.stdout.splitlines()], ["least_squares", "secant"])
+
+
+    def test_models_and_words_that_the_daemon_checks_go_without_one(self):
+        def offered(*words):
+            done = subprocess.run([REGRASP, "__complete", *words], env=environment(REGRASP_SOCKET=str(self.socket)), capture_output=True, text=True,
+                                  timeout=HANG_S, check=True)
+            return [line.split("\t")[0] for line in done.stdout.splitlines()]
+
+        for words, wanted in [(["up", "--object", "sphere_6"], [":files", "sphere_60mm"]), (["up", "--hand", "l"], [":files", "leap"]),
+                              (["experiment", "rotation", "--hand", "al"], [":files", "allegro"]), (["object", "show", "eg"], [":files", "egg"]),
+                              (["hand", "new", "--object", "eg"], [":files", "egg"]), (["hand", "check", "sh"], [":files", "shadow"]),
+                              (["experiment", "zoo", "--objects", "eg"], ["egg"]), (["up", "--noise", "ta"], ["taxel"]),
+                              (["up", "--clock", ""], ["continuous", "lockstep"]), (["up", "--stepper", ""], ["auto", "exact", "fast"]),
+                              (["experiment", "exploration", "--estimator", "s"], ["secant"])]:
+            with self.subTest(words):
+                self.assertEqual(offered(*words), wanted)
 
 
 if __name__ == "__main__":

@@ -190,7 +190,8 @@ class Runs(DaemonCase):
         self.assertEqual(found["commands"], 9)
         self.assertGreaterEqual(found["ticks"], 6200)  # the last command, at the least
         self.public_reader(path, complete=False, killed=True)
-        self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "mended.mcap")
+        said = self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "mended.mcap")
+        self.assertIn("the file has no end", said.stdout)
         self.assertTrue(self.json("replay", self.dir / "mended.mcap")["complete"])
         self.public_reader(self.dir / "mended.mcap", complete=True, killed=True)
 

@@ -78,6 +78,49 @@ TEST(CoupledJoint, IsHeldByTheTorqueThatItsDriverBears) {
     }
 }
 
+TEST(CoupledJoint, OnACarriedDriverWithStrongDampingMovesAlikeInBothSteppers) {
+  // Light links whose inertia is the armature, as published hands have; the exact step's
+  // transmission must not be stiffer than they bear.
+  for (const double damping : {0.02, 0.05, 0.1, 0.3})
+    for (const double ratio : {1.0, 1.45, -1.0}) {
+      SCOPED_TRACE(testing::Message() << damping << " " << ratio);
+      HandModel hand = CoupledFinger(ratio);
+      // The finger stands on a joint of its own, and a second follower on the first.
+      hand.links.insert(hand.links.begin() + 1, hand.links[1]);
+      hand.joints.insert(hand.joints.begin(), hand.joints[0]);
+      hand.links.push_back(hand.links[3]);
+      hand.joints.push_back(hand.joints[2]);
+      hand.num_coupled = 2;
+      for (int j = 0; j < 4; ++j) {
+        hand.joints[j].parent_link = j;
+        hand.joints[j].child_link = j + 1;
+        hand.joints[j].X_PJ.translation().z() = j == 0 ? 0 : 0.03;
+        hand.joints[j].damping = damping;
+        hand.joints[j].driver = j < 2 ? -1 : 1;
+        hand.links[j + 1].parent_joint = j;
+        hand.links[j + 1].mass = 0.01;
+        hand.links[j + 1].I_LCom = Vector3d(8e-7, 8e-7, 3e-7).asDiagonal();
+      }
+      hand.fingers[0].joints = {0, 1};
+      hand.fingers[0].tip_link = 4;
+      JointVector q[2];
+      for (const Stepper stepper : {Stepper::kFast, Stepper::kExact}) {
+        WorldConfig config;
+        config.stepper = stepper;
+        World world(hand, FarBall(), config, JointVector::Zero(2), At(0, 1, 0));
+        world.SetGravity(Vector3d::Zero());
+        for (int k = 0; k < 300; ++k) {
+          world.SetTorque(JointVector::Constant(2, 0.5) - world.state().q);
+          ASSERT_EQ(world.Step(), StepStatus::kOk) << k << ": " << world.fault_message();
+        }
+        q[stepper == Stepper::kExact] = world.state().q;
+      }
+      EXPECT_GT(q[0].maxCoeff(), 0.1);
+      // The elastic transmission gives way by some per cent while it accelerates.
+      EXPECT_LT((q[0] - q[1]).cwiseAbs().maxCoeff(), 0.05 * q[0].cwiseAbs().maxCoeff());
+    }
+}
+
 TEST(CoupledJoint, StopsAtTheFollowersLimitAndStaysThere) {
   HandModel hand = CoupledFinger(1.0);
   hand.joints[1].upper = 0.5;  // the loader narrows the driver; here the follower's own stop acts

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "daemon/output/incident.h"
+#include "snapshots/plots.h"
 #include "tests/unit/snapshots/synthetic_run.h"
 
 namespace regrasp {
@@ -126,6 +127,15 @@ TEST_F(IncidentRecord, FrictionBelowWhatControlCountsOnIsSaid) {
   for (Frame& frame : frames) frame.friction = 0.2;
   source.frames.clear();
   EXPECT_TRUE(Says(Make(), "Friction was 0.2, where control counts on 0.5"));
+}
+
+TEST_F(IncidentRecord, NamesWhatDiffersFromTheDefaults) {
+  EXPECT_EQ(IncidentJson(Make(), hand)["changed_parameters"], Json::object());
+  source.changed = {{"gait.step_rad", 0.3}};
+  source.changed_text = "gait.step_rad = 0.3";
+  const Incident incident = Make();
+  EXPECT_EQ(IncidentJson(incident, hand)["changed_parameters"], source.changed);
+  EXPECT_EQ(PictureOf(incident, hand).options.changed, "gait.step_rad = 0.3");
 }
 
 TEST_F(IncidentRecord, AFaultHasOneToo) {

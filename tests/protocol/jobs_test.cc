@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/wire/frame_json.h"
 #include "tests/protocol/daemon_fixture.h"
 
 namespace regrasp::test {
@@ -244,6 +245,17 @@ std::string HashOfScript(const std::string& socket, bool watched) {
   if (!watched) client.Result("job.wait", {{"id", client.Result("step", {{"ticks", 600}})["job"]}});
   EXPECT_EQ(client.Result("status")["tick"], 3000);
   return client.Result("status")["state_hash"];
+}
+
+TEST(JobRecord, PhiIsUnknownBeforeTheFirstCycle) {
+  JobRecord job;
+  job.method = JobMethod::kExplore;
+  for (const bool explored : {false, true}) {
+    job.explore.cycles = explored ? 1 : 0;
+    const Json json = JobJson(job, HandModel(), 1e-3);
+    for (const char* phi : {"phi_initial", "phi_final", "phi_true_initial", "phi_true_final"})
+      EXPECT_EQ(json[phi].is_null(), !explored) << phi;
+  }
 }
 
 TEST_F(Jobs, TheSameScriptGivesTheSameBitsWatchedOrNot) {

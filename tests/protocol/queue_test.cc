@@ -81,10 +81,11 @@ TEST(History, ThinsWhatIsOlderThanAMinute) {
 
 TEST(History, KeepsTheLastTwoExplorationsAcrossAReset) {
   History history;
-  const auto run = [&](int job, SessionState state, int frames) {
+  const auto run = [&](int job, SessionState state, int frames, bool slides = true) {
     Frame frame;
     frame.job.id = job;
     frame.state = state;
+    frame.exploration.active = slides;
     for (int i = 0; i < frames; ++i) {
       frame.time_s += History::kFinePeriod;
       history.Add(frame);
@@ -96,6 +97,7 @@ TEST(History, KeepsTheLastTwoExplorationsAcrossAReset) {
   EXPECT_EQ(history.Explorations().size(), 1u);
   run(3, SessionState::kExploring, 7);
   run(4, SessionState::kExploring, 9);
+  run(5, SessionState::kExploring, 6, false);  // refused before its finger slid
   const auto kept = history.Explorations();
   ASSERT_EQ(kept.size(), History::kExplorations);
   EXPECT_EQ(kept[0].size(), 7u);

@@ -49,8 +49,7 @@ class PiecesTest : public LoaderTest {
 TEST_F(PiecesTest, OnePrimitiveStaysWhatItIsWhereItCan) {
   using Kind = ObjectModel::Kind;
   EXPECT_EQ(Of(Collisions({{"rpy=\"1 2 3\"", "<sphere radius=\"0.03\"/>"}})).kind, Kind::kSphere);
-  EXPECT_EQ(Of(Collisions({{"rpy=\"0 0 3\"", "<cylinder radius=\"0.02\" length=\"0.04\"/>"}})).kind,
-            Kind::kCapsule);
+  EXPECT_EQ(Of(Collisions({{"rpy=\"0 0 0\"", "<box size=\"0.04 0.05 0.06\"/>"}})).kind, Kind::kBox);
   EXPECT_EQ(
       Of(Collisions({{"xyz=\"0 0 0.01\"", "<sphere radius=\"0.03\"/>"}}), {}, nullptr, "0 0 0.01")
           .kind,
@@ -59,13 +58,27 @@ TEST_F(PiecesTest, OnePrimitiveStaysWhatItIsWhereItCan) {
   const ObjectModel lying = Of(Collisions(
       {{"rpy=\"0 1.5707963267948966 0\"", "<cylinder radius=\"0.02\" length=\"0.04\"/>"}}));
   EXPECT_EQ(lying.kind, Kind::kMesh);
-  EXPECT_LT((Extent(lying) - Vector3d(0.08, 0.04, 0.04)).norm(), 2 * kFacet);
+  EXPECT_LT((Extent(lying) - Vector3d(0.04, 0.04, 0.04)).norm(), 2 * kFacet);
   ObjectFacts facts;
   const ObjectModel beside =
       Of(Collisions({{"", "<sphere radius=\"0.03\"/>"}}), {}, &facts, "0.005 0 0");
   EXPECT_EQ(beside.kind, Kind::kMesh);
   EXPECT_NEAR(beside.bounding_radius, 0.035, kFacet);
   EXPECT_EQ(facts.p_LCom, Vector3d(0.005, 0, 0));
+}
+
+TEST_F(PiecesTest, ACylinderHasFlatEnds) {
+  // A tin: no round ends are added to what is 100 mm long, and its body is that of a cylinder.
+  ObjectFacts facts;
+  const ObjectModel tin =
+      Of(Collisions({{"", "<cylinder radius=\"0.033\" length=\"0.1\"/>"}}), shape_, &facts);
+  EXPECT_LT((Extent(tin) - Vector3d(0.066, 0.066, 0.1)).norm(), 2 * kFacet);
+  const double across = 0.08 * (3 * 0.033 * 0.033 + 0.1 * 0.1) / 12;
+  EXPECT_NEAR(tin.I_OCom(0, 0), across, 2e-3 * across);
+  EXPECT_NEAR(tin.I_OCom(2, 2), 0.08 * 0.033 * 0.033 / 2, 2e-3 * 0.08 * 0.033 * 0.033 / 2);
+  EXPECT_NEAR(ObjectSolid(tin).volume, M_PI * 0.033 * 0.033 * 0.1, 2e-3 * 3.4e-4);
+  for (const Vector3d& v : CylinderMesh(0.033, 0.05).vertices)
+    EXPECT_NEAR(std::abs(v.z()), 0.05, 1e-15);
 }
 
 TEST_F(PiecesTest, FacetsLieAboutTheRoundSurface) {

@@ -326,6 +326,15 @@ TEST_F(PublishedTest, ReportsWhatItTook) {
             std::string::npos);
 }
 
+TEST_F(PublishedTest, AContinuousJointNeedsNoLimit) {
+  const std::string limit = "<limit lower=\"0\" upper=\"1.5\" effort=\"2\" velocity=\"10\"/>";
+  const std::string turning =
+      Replaced(kHandUrdf, "\"A\" type=\"revolute\"", "\"A\" type=\"continuous\"");
+  Write("hands/mini.urdf", Replaced(turning, limit, ""));
+  Write("hands/mini.toml", kScenarioToml);
+  EXPECT_DOUBLE_EQ(Load().hand.joints[0].effort, kDefaultEffort);
+}
+
 TEST_F(PublishedTest, PosturesMayStandOnRoundedLimits) {
   EditScenario("A = 10", "A = -0.005");
   EXPECT_EQ(Load().scenario.q_preshape[0], 0);

@@ -235,6 +235,13 @@ TEST(EvaluateJson, TakesTheContactsOfTheDaemonAsTheyAre) {
   EXPECT_FALSE(from_live.contains("warnings"));
 }
 
+TEST(EvaluateJson, AMarginOfNothingIsZeroAndNotMinusZero) {
+  json file = File({Tetrahedron(0.025, 0.5)[0]});
+  file["weight_n"] = {0, 0, -0.785};
+  const std::string out = EvaluateJson(file.dump());
+  EXPECT_NE(out.find("\"load_margin_n\":0.0"), std::string::npos) << out;
+}
+
 TEST(EvaluateJson, WarnsOfNormalsThatAllPointAway) {
   json file = File(Tetrahedron(0.025, 0.5));
   for (auto& contact : file["contacts"])
