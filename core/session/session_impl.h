@@ -19,7 +19,8 @@ struct Session::Impl {
 
   // session.cc
   explicit Impl(SessionConfig config);
-  void Sense();
+  /// Valid until the next call.
+  const SensorReading& Sense();
   void Tick();
   FingerSet GraspFingers() const;
   ActivityContext Context();
@@ -47,7 +48,7 @@ struct Session::Impl {
   bool job_running() const { return job.id != 0 && job.state == JobState::kRunning; }
 
   // feel.cc: the object's surface, from what the controller believes
-  void Feel();
+  void Feel(const SensorReading& reading);
   void FeelFriction();
   /// What this tick goes by: parameters.control, with the friction that was felt where landings are
   /// planned, and parameters.shape.
