@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "snapshots/sheet.h"
 
@@ -104,7 +105,7 @@ class PdfSheet final : public Sheet {
 
   void Paste(const cv::Mat& bgr, const Box& box) override {
     const int stride = cairo_format_stride_for_width(CAIRO_FORMAT_RGB24, bgr.cols);
-    std::string pixels(static_cast<std::size_t>(stride) * bgr.rows, '\0');
+    std::vector<unsigned char> pixels(static_cast<std::size_t>(stride) * bgr.rows);
     for (int y = 0; y < bgr.rows; ++y) {
       for (int x = 0; x < bgr.cols; ++x) {
         const auto& p = bgr.at<cv::Vec3b>(y, x);
@@ -112,9 +113,8 @@ class PdfSheet final : public Sheet {
         std::memcpy(&pixels[static_cast<std::size_t>(y) * stride + 4 * x], &rgb, sizeof(rgb));
       }
     }
-    cairo_surface_t* image =
-        cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels.data()),
-                                            CAIRO_FORMAT_RGB24, bgr.cols, bgr.rows, stride);
+    cairo_surface_t* image = cairo_image_surface_create_for_data(pixels.data(), CAIRO_FORMAT_RGB24,
+                                                                 bgr.cols, bgr.rows, stride);
     cairo_save(cairo_);
     cairo_translate(cairo_, box.x, box.y);
     cairo_scale(cairo_, box.width / bgr.cols, box.height / bgr.rows);

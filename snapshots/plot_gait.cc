@@ -6,6 +6,7 @@
 
 #include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
+#include "snapshots/gait_strip.h"
 #include "snapshots/measures.h"
 #include "snapshots/plots.h"
 #include "snapshots/timeline.h"
@@ -40,15 +41,6 @@ BandLook LookOfActivity(int finger, int value) {
       break;
   }
   return {"", kWhite};
-}
-
-/// Value of the gait strip: the finger that regrasps, kTurning while the object is turned, -1
-/// without a gait.
-constexpr int kTurning = 100;
-
-int GaitStateOf(const Frame& frame) {
-  if (!frame.gait.active) return -1;
-  return frame.gait.finger >= 0 ? frame.gait.finger : kTurning;
 }
 
 /// The paper's name of the state in which a finger regrasps: S_T thumb, S_F first, ...

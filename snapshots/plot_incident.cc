@@ -6,6 +6,7 @@
 
 #include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
+#include "snapshots/gait_strip.h"
 #include "snapshots/measures.h"
 #include "snapshots/plots.h"
 #include "snapshots/timeline.h"
@@ -49,14 +50,6 @@ BandLook LookOfActivity(int finger, int value) {
       return {"no contact", kWhite};
   }
   return {"", kWhite};
-}
-
-/// The gait strip: the finger that regrasps, kTurning otherwise, -1 without a gait.
-constexpr int kTurning = 100;
-
-int GaitStateOf(const Frame& frame) {
-  if (!frame.gait.active) return -1;
-  return frame.gait.finger >= 0 ? frame.gait.finger : kTurning;
 }
 
 /// A capital for each finger: the first letter of its name.

@@ -70,12 +70,12 @@ Json Thinned(const std::vector<RocPoint>& roc) {
 
 const std::vector<WatchedMeasure>& WatchedMeasures() {
   static const std::vector<WatchedMeasure> measures = {
-      {"min_singular_value", "σ_min", -1},
-      {"epsilon", "ε", -1},
-      {"sqrt_det", "√det", -1},
-      {"isotropy", "isotropy", -1},
-      {"volume", "volume of the wrench hull", -1},
-      {"load_margin_n", "load margin ρ", -1},
+      {"min_singular_value", "σ_min", -1, true},
+      {"epsilon", "ε", -1, true},
+      {"sqrt_det", "√det", -1, true},
+      {"isotropy", "isotropy", -1, true},
+      {"volume", "volume of the wrench hull", -1, true},
+      {"load_margin_n", "load margin ρ", -1, true},
       {"load_margin_without_n", "ρ without the worst finger", -1},
       {"friction_ratio", "friction asked for, of what is there", 1},
       {"normal_force_n", "least normal force", -1},
@@ -93,9 +93,8 @@ std::vector<double> Look(const Json& quality, const Json& contacts) {
   };
   // A measure of no contacts at all is that of a hand that holds nothing.
   std::vector<double> values;
-  for (const char* name :
-       {"min_singular_value", "epsilon", "sqrt_det", "isotropy", "volume", "load_margin_n"})
-    values.push_back(number(At(quality, name), 0));
+  for (const WatchedMeasure& measure : WatchedMeasures())
+    if (measure.of_grasp) values.push_back(number(At(quality, measure.name), 0));
   double without = kAlarmLimit, manipulability = kAlarmLimit, limit = kAlarmLimit;
   double ratio = 0, force = kAlarmLimit, touching = 0;
   for (const auto& [name, finger] : Named(quality.at("fingers"), "finger")) {

@@ -25,7 +25,8 @@ inline constexpr double kSoon_s = 0.2, kFar_s = 1.0, kAfter_s = 1.0, kHistory_s 
 /// A quantity of the controller that is looked at, in the order in which looks hold their values.
 struct WatchedMeasure {
   const char *name, *title;
-  int danger;  ///< -1: a low value is bad, +1: a high one
+  int danger;             ///< -1: a low value is bad, +1: a high one
+  bool of_grasp = false;  ///< of the whole grasp: stands in `quality` by its name; these come first
 };
 const std::vector<WatchedMeasure>& WatchedMeasures();
 

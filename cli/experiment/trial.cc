@@ -59,9 +59,13 @@ Json Head(const Plan& plan, const Unit& unit) {
   return {{"case", plan.cases.at(unit.which).name}};
 }
 
-/// What it says where the object never was in the hand.
-std::string WithoutGrasp(const Json& status) {
-  return Plain(At(status, "state")) == "faulted" ? "fault" : "not_grasped";
+/// The columns that follow: on what, and how it ends where the object never was in the hand.
+Json Begun(const Unit& unit, const Json& status, const Json& grasp) {
+  return {{"noise", unit.noise},
+          {"object", At(status, "object")},
+          {"seed", unit.seed},
+          {"outcome", Plain(At(status, "state")) == "faulted" ? "fault" : "not_grasped"},
+          {"error", At(grasp, "error")}};
 }
 
 Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
@@ -73,12 +77,8 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
   Json row = Head(plan, unit);
   row.update({{"finger", unit.subject},
               {"criterion", plan.CriterionOf(unit.which)},
-              {"estimator", estimator},
-              {"noise", unit.noise},
-              {"object", At(status, "object")},
-              {"seed", unit.seed},
-              {"outcome", WithoutGrasp(status)},
-              {"error", At(grasp, "error")}});
+              {"estimator", estimator}});
+  row.update(Begun(unit, status, grasp));
   Json record, moved;
   if (Done(grasp)) {
     const Json before = ObjectPlace(daemon);
@@ -136,13 +136,8 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit, WatchedRu
   Json status = daemon->Call("status");
   const double turns_wanted = plan.TurnsOf(unit.which);
   Json row = Head(plan, unit);
-  row.update({{"axis_W", unit.subject},
-              {"turns", turns_wanted},
-              {"noise", unit.noise},
-              {"object", At(status, "object")},
-              {"seed", unit.seed},
-              {"outcome", WithoutGrasp(status)},
-              {"error", At(grasp, "error")}});
+  row.update({{"axis_W", unit.subject}, {"turns", turns_wanted}});
+  row.update(Begun(unit, status, grasp));
   Json record;
   GaitEvents events(daemon);
   const double push_n = plan.setting(unit.which).push_n;

@@ -41,11 +41,6 @@ bool IsFile(const fs::path& path) {
 
 }  // namespace
 
-void HandShapes::Warn(int line, const UrdfLink& in, std::string text) {
-  if (report_)
-    report_->warnings.push_back({problems_->file(), line, LinkElement(in.name), std::move(text)});
-}
-
 std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip) {
   std::vector<Shape> shapes;
   const UrdfCollision* tip_box = fingertip ? FarthestIfBoxes(in) : nullptr;
@@ -109,9 +104,9 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
     return {};
   }
   if (!beside.empty())
-    Warn(geometry.line, in,
-         fmt::format("<mesh> filename = {}: not found; {} in its place", Shown(geometry.mesh_name),
-                     beside.lexically_normal().string()));
+    problems_->Warn(geometry.line, LinkElement(in.name),
+                    fmt::format("<mesh> filename = {}: not found; {} in its place",
+                                Shown(geometry.mesh_name), beside.lexically_normal().string()));
   return beside;
 }
 
@@ -126,10 +121,11 @@ Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
   Shape shape;
   shape.radius = std::clamp(kSlender * end.norm(), kLeast, kMost);
   if (end.norm() > shape.radius) shape.b_L = end * (1 - shape.radius / end.norm());
-  Warn(geometry.line, in,
-       fmt::format("<mesh> filename = {}: not found; a capsule of {:.3g} mm radius and {:.3g} mm "
-                   "segment in its place",
-                   Shown(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
+  problems_->Warn(
+      geometry.line, LinkElement(in.name),
+      fmt::format("<mesh> filename = {}: not found; a capsule of {:.3g} mm radius and {:.3g} mm "
+                  "segment in its place",
+                  Shown(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
   return shape;
 }
 
@@ -185,11 +181,12 @@ Shape HandShapes::Fitted(const UrdfLink& in, const UrdfGeometry& geometry,
   if (report_)
     report_->fits.push_back({in.name, name, fit.kind, fit.error_m, fit.rms_m, fingertip});
   if (fingertip && fit.error_m > kGoodFit)
-    Warn(geometry.line, in,
-         fmt::format("the fingertip's {} differs from its {} by up to {:.2g} mm (rms {:.2g} mm); "
-                     "within 1 mm contacts would be those of the {}",
-                     fit.kind, name == "<box>" ? "box" : "mesh", 1e3 * fit.error_m, 1e3 * fit.rms_m,
-                     name == "<box>" ? "box" : "mesh"));
+    problems_->Warn(
+        geometry.line, LinkElement(in.name),
+        fmt::format("the fingertip's {} differs from its {} by up to {:.2g} mm (rms {:.2g} mm); "
+                    "within 1 mm contacts would be those of the {}",
+                    fit.kind, name == "<box>" ? "box" : "mesh", 1e3 * fit.error_m, 1e3 * fit.rms_m,
+                    name == "<box>" ? "box" : "mesh"));
   return fit.shape;
 }
 

@@ -37,7 +37,6 @@ class HandShapes {
   /// A capsule from the link's frame to the farthest frame of its children.
   Shape Filled(const UrdfLink& in, const UrdfGeometry& geometry);
   const TriangleMesh* Mesh(const std::filesystem::path& file, const Vector3d& scale);
-  void Warn(int line, const UrdfLink& in, std::string text);
 
   const UrdfFile& file_;
   const LoadOptions& options_;

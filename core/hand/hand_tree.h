@@ -20,6 +20,8 @@ class HandTree {
   const UrdfJoint& joint(int j) const { return file_.joints[static_cast<std::size_t>(j)]; }
   const UrdfLink& link(int l) const { return file_.links[static_cast<std::size_t>(l)]; }
 
+  int FindLink(const std::string& name) const { return file_.FindLink(name); }
+
   struct Coupling {
     int driver = -1;
     double ratio = 1, offset = 0;

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
-#include "core/hand/link_body.h"
-#include "core/hand/mesh.h"
-#include "core/hand/primitive_mesh.h"
+#include "core/hand/object_pieces.h"
+#include "core/hand/rigid_body.h"
 #include "core/hand/solid.h"
 #include "core/hand/toml_file.h"
 #include "core/hand/urdf_file.h"
@@ -18,56 +15,33 @@
 namespace regrasp {
 namespace {
 
-/// Surfaces that share no corner.
-int CountPieces(const ObjectModel& object) {
-  std::vector<int> up(object.vertices_O.size());
-  std::iota(up.begin(), up.end(), 0);
-  const auto top = [&](int i) {
-    while (up[static_cast<std::size_t>(i)] != i)
-      i = up[static_cast<std::size_t>(i)] =
-          up[static_cast<std::size_t>(up[static_cast<std::size_t>(i)])];
-    return i;
-  };
-  for (const Eigen::Vector3i& t : object.triangles)
-    for (int k = 1; k < 3; ++k) up[static_cast<std::size_t>(top(t[k]))] = top(t[0]);
-  int pieces = 0;
-  for (std::size_t i = 0; i < up.size(); ++i) pieces += up[i] == static_cast<int>(i);
-  return pieces;
-}
-
 class ObjectReader {
  public:
   ObjectReader(const std::filesystem::path& path, const LoadOptions& options, ModelReport* report,
                ObjectFacts* facts, const Matrix3d& R_OL)
-      : problems_(path.string()),
+      : problems_(path.string(), report),
         file_(ReadUrdf(path, &problems_)),
         options_(options),
-        report_(report),
         facts_out_(facts),
         R_OL_(R_OL) {}
 
   ObjectModel Read() {
     problems_.ThrowIfAny();
-    const UrdfLink& root = file_.links[static_cast<std::size_t>(file_.root)];
-    element_ = LinkElement(root.name);
-    std::optional<UrdfInertial> inertial = root.inertial;
-    collisions_ = root.collisions;
-    if (file_.links.size() > 1) Merge(&inertial);
+    const UrdfLink body = OneBody(file_, &problems_);
+    element_ = LinkElement(body.name);
+    collisions_ = body.collisions;
     Isometry3d X_OL = Isometry3d::Identity();
     X_OL.linear() = R_OL_;
     for (UrdfCollision& collision : collisions_) collision.X_LG = X_OL * collision.X_LG;
-    if (!inertial)
-      problems_.Add(root.line, "{}: has no <inertial>", element_);
-    else if (!(inertial->mass > 0))
-      problems_.Add(inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_, inertial->mass);
+    if (!body.inertial)
+      problems_.Add(body.line, "{}: has no <inertial>", element_);
+    else if (!(body.inertial->mass > 0))
+      problems_.Add(body.inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_,
+                    body.inertial->mass);
     if (collisions_.empty())
-      problems_.Add(root.line, "{}: has no <collision>; an object has at least one", element_);
+      problems_.Add(body.line, "{}: has no <collision>; an object has at least one", element_);
     problems_.ThrowIfAny();
-    for (const UrdfLink& link : file_.links)
-      if (link.second_inertial_line > 0 && report_)
-        report_->warnings.push_back({problems_.file(), link.second_inertial_line,
-                                     LinkElement(link.name), "a second <inertial> is not read"});
-    inertial_ = *inertial;
+    inertial_ = *body.inertial;
     inertial_.X_LI = X_OL * inertial_.X_LI;
     object_.name = file_.name;
     ReadShape();
@@ -80,40 +54,6 @@ class ObjectReader {
   }
 
  private:
-  /// Makes one body of links that are fixed to each other, in the frame of the first.
-  void Merge(std::optional<UrdfInertial>* inertial) {
-    for (const UrdfJoint& joint : file_.joints)
-      if (joint.type != UrdfJoint::Type::kFixed)
-        problems_.Add(joint.line, "{}: type \"{}\": an object is one rigid body; allowed is fixed",
-                      JointElement(joint.name), joint.type_name.substr(0, 40));
-    Link sum;
-    std::optional<UrdfInertial> first;
-    const auto add = [&](const auto& self, int l, const Isometry3d& X) -> void {
-      const UrdfLink& link = file_.links[static_cast<std::size_t>(l)];
-      if (l != file_.root)
-        for (UrdfCollision collision : link.collisions) {
-          collision.X_LG = X * collision.X_LG;
-          collisions_.push_back(collision);
-        }
-      if (link.inertial && !(link.inertial->mass >= 0))
-        problems_.Add(link.inertial->line, "{}: <mass> = {:.6g}; must be >= 0",
-                      LinkElement(link.name), link.inertial->mass);
-      else if (link.inertial)
-        AddBodyTo(&sum, *link.inertial, X);
-      if (!first || !(first->mass > 0)) first = link.inertial ? link.inertial : first;
-      for (const int j : link.child_joints) {
-        const UrdfJoint& joint = file_.joints[static_cast<std::size_t>(j)];
-        self(self, joint.child, X * joint.X_PJ);
-      }
-    };
-    add(add, file_.root, Isometry3d::Identity());
-    *inertial = first;  // for its lines
-    if (!first) return;
-    (*inertial)->mass = sum.mass;
-    (*inertial)->inertia = sum.I_LCom;
-    (*inertial)->X_LI = Isometry3d(Eigen::Translation3d(sum.p_LCom));
-  }
-
   /// The shape, about the centre of mass.
   void ReadShape() {
     using Kind = UrdfGeometry::Kind;
@@ -140,44 +80,15 @@ class ObjectReader {
     CheckSize();
   }
 
-  /// Throws ModelError.
-  static TriangleMesh MeshOf(const UrdfGeometry& geometry) {
-    switch (geometry.kind) {
-      case UrdfGeometry::Kind::kSphere:
-        return CapsuleMesh(geometry.radius, 0);
-      case UrdfGeometry::Kind::kCylinder:
-        return CylinderMesh(geometry.radius, geometry.length / 2);
-      case UrdfGeometry::Kind::kBox:
-        return BoxMesh(geometry.size);
-      case UrdfGeometry::Kind::kMesh:
-        break;
-    }
-    return LoadClosedMesh(geometry.mesh, geometry.scale);
-  }
-
   void ReadPieces() {
     object_.kind = ObjectModel::Kind::kMesh;
-    for (const UrdfCollision& piece : collisions_) {
-      TriangleMesh mesh;
-      try {
-        mesh = MeshOf(piece.geometry);
-      } catch (const ModelError& error) {
-        problems_.Add(piece.geometry.line, "{}: {}", element_, error.what());
-        continue;
-      }
-      const int base = static_cast<int>(object_.vertices_O.size());
-      for (const Vector3d& v : mesh.vertices) object_.vertices_O.push_back(piece.X_LG * v);
-      for (const auto& t : mesh.triangles)
-        object_.triangles.push_back(t + Eigen::Vector3i::Constant(base));
-    }
+    TriangleMesh mesh = JoinPieces(collisions_, element_, &problems_);
     problems_.ThrowIfAny();
-    constexpr std::size_t kMaxVertices = 200000;
-    if (object_.vertices_O.size() > kMaxVertices)
-      problems_.Add(0, "the pieces have {} vertices; allowed are at most {}",
-                    object_.vertices_O.size(), kMaxVertices);
-    const Solid solid = PiecesSolid({object_.vertices_O, object_.triangles}, &facts_.overlap_m3);
+    const Solid solid = PiecesSolid(mesh, &facts_.overlap_m3);
     facts_.p_LCom = options_.inertia_from_shape ? solid.centre : PCom();
-    facts_.pieces = CountPieces(object_);
+    facts_.pieces = CountPieces(mesh);
+    object_.vertices_O = std::move(mesh.vertices);
+    object_.triangles = std::move(mesh.triangles);
     object_.bounding_radius = 0;
     for (Vector3d& v : object_.vertices_O) {
       v -= facts_.p_LCom;
@@ -218,10 +129,9 @@ class ObjectReader {
       return;
     }
     for (const Impossible& reason : WhyNoBody(object_)) {
-      if (options_.force && report_)
-        report_->warnings.push_back(
-            {problems_.file(), line, element_, reason.why + "; taken because of --force"});
-      if (!options_.force)
+      if (options_.force)
+        problems_.Warn(line, element_, reason.why + "; taken because of --force");
+      else
         problems_.Add(
             line, "{}: {}; {}--force takes it as it is", element_, reason.why,
             reason.changed_by_shape ? "--inertia-from-shape computes centre and inertia, " : "");
@@ -233,7 +143,6 @@ class ObjectReader {
   Problems problems_;
   UrdfFile file_;
   const LoadOptions& options_;
-  ModelReport* report_;
   ObjectFacts* facts_out_;
   ObjectFacts facts_;
   Matrix3d R_OL_;

@@ -18,6 +18,10 @@ void Problems::AddText(int line, const std::string& message) {
                 : fmt::format("{}: {}", file_, message));
 }
 
+void Problems::Warn(int line, std::string element, std::string text) {
+  if (report_) report_->warnings.push_back({file_, line, std::move(element), std::move(text)});
+}
+
 void Problems::Keep(const std::string& message) {
   ++count_;
   if (messages_.size() < kShown &&

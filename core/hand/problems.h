@@ -1,6 +1,7 @@
 #pragma once
 
-/// What is wrong with a file, gathered so that its reader hears of everything at once.
+/// What is wrong with a file, gathered so that its reader hears of everything at once; and what is
+/// only worth telling.
 
 #include <fmt/format.h>
 
@@ -11,9 +12,13 @@
 
 namespace regrasp {
 
+struct ModelReport;
+
 class Problems {
  public:
-  explicit Problems(std::string file) : file_(std::move(file)) {}
+  /// `report`: where warnings go, if anywhere.
+  explicit Problems(std::string file, ModelReport* report = nullptr)
+      : file_(std::move(file)), report_(report) {}
 
   /// "FILE:LINE: message"; without a line (0) "FILE: message".
   template <typename... Args>
@@ -23,6 +28,8 @@ class Problems {
   void AddText(int line, const std::string& message);
   /// A message that names its file itself.
   void AddWhole(const std::string& message) { Keep(message); }
+  /// A ModelWarning, which refuses nothing.
+  void Warn(int line, std::string element, std::string text);
 
   const std::string& file() const { return file_; }
   bool empty() const { return count_ == 0; }
@@ -34,6 +41,7 @@ class Problems {
   void Keep(const std::string& message);
 
   std::string file_;
+  ModelReport* report_;
   std::vector<std::string> messages_;
   std::size_t count_ = 0;
 };

@@ -103,6 +103,9 @@ class Checker {
         CheckCollision(child, values);
       else  // a second is published, too: the first counts, as elsewhere, and the other is told
         CheckInertial(child, values);
+    const XMLElement* first = node->FirstChildElement("inertial");
+    if (const XMLElement* second = first ? first->NextSiblingElement("inertial") : nullptr)
+      problems_->Warn(second->GetLineNum(), LinkElement(name), "a second <inertial> is not read");
     link_index_[name] = static_cast<int>(links_.size());
     links_.push_back({name, node->GetLineNum(), -1, {}});
   }

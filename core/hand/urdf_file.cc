@@ -123,12 +123,7 @@ UrdfLink ToLink(const XMLElement& node, const urdf::Link& in) {
   UrdfLink out;
   out.name = in.name;
   out.line = node.GetLineNum();
-  if (in.inertial) {
-    const XMLElement& inertial = *node.FirstChildElement("inertial");
-    out.inertial = ToInertial(inertial, *in.inertial);
-    if (const XMLElement* second = inertial.NextSiblingElement("inertial"))
-      out.second_inertial_line = second->GetLineNum();
-  }
+  if (in.inertial) out.inertial = ToInertial(*node.FirstChildElement("inertial"), *in.inertial);
   const XMLElement* collision = node.FirstChildElement("collision");
   for (const urdf::CollisionSharedPtr& shape : in.collision_array) {
     const XMLElement& geometry = *collision->FirstChildElement("geometry")->FirstChildElement();

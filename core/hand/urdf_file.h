@@ -45,7 +45,6 @@ struct UrdfInertial {
 };
 
 struct UrdfLink {
-  int second_inertial_line = 0;  ///< of an <inertial> beside the one that is read; 0: none
   std::string name;
   int line = 0;
   std::optional<UrdfInertial> inertial;
@@ -86,7 +85,8 @@ struct UrdfFile {
 };
 
 /// Reads and checks the file. Throws ModelError where it is no XML or no <robot>; adds every other
-/// mistake to `problems`, whose caller throws them (ThrowIfAny) before it uses the result.
+/// mistake to `problems`, whose caller throws them (ThrowIfAny) before it uses the result, and
+/// warns of what is not read though it looks as if it were.
 UrdfFile ReadUrdf(const std::filesystem::path& path, Problems* problems);
 
 inline std::string LinkElement(const std::string& name) { return "link \"" + name + "\""; }

@@ -67,7 +67,6 @@ class WrenchHull {
   /// Volume of the polytope built so far.
   double Volume() const;
 
-  std::size_t facet_count() const { return facets_.size() - free_.size(); }
   /// Facets made since Start(): the measure of the work done.
   std::size_t facets_built() const { return facets_built_; }
 

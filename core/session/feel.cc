@@ -4,13 +4,13 @@
 
 namespace regrasp {
 
-void Session::Impl::Feel() {
+void Session::Impl::Feel(const SensorReading& reading) {
   const ShapeParameters& shape = parameters.shape;
   if (tick % Ticks(shape.interval_s, dt) != 0) return;
   if (!parameters.gait.map) felt.Reset();
   const Estimate& e = estimator.estimate();
   // The sensed pose lags behind the contacts, which move with the joint angles.
-  const double late_s = sensors.noise().object_rate_hz > 0
+  const double late_s = reading.object_rate_hz > 0  // the estimator makes up for it
                             ? 0
                             : parameters.control.pose_filter_s - parameters.control.joint_filter_s;
   const Quaterniond q_OW = (FromRotationVector(late_s * motion.w_W) * e.q_WO).conjugate();

@@ -77,11 +77,13 @@ Activity* Session::Impl::Running(SessionState in) {
   return running;
 }
 
-void Session::Impl::Sense() {
+const SensorReading& Session::Impl::Sense() {
   FingerSet holding;
   for (int i = 0; i < hand.num_fingers(); ++i)
     if (tasks[i].mode == FingerMode::kHold) holding.add(i);
-  estimator.Update(sensors.Read(tick, world.state()), parameters.control, holding);
+  const SensorReading& reading = sensors.Read(tick, world.state());
+  estimator.Update(reading, parameters.control, holding);
+  return reading;
 }
 
 void Session::Impl::HoldAll() {
@@ -108,11 +110,11 @@ void Session::Impl::Tick() {
     return;
   }
   StageClock clock(measure);
-  Sense();
+  const SensorReading& reading = Sense();
   if (tick % kJudgeInterval == 0) judge.Look(tick, world.state(), parameters.control);
   times.sense_s = clock.Lap();
 
-  Feel();
+  Feel(reading);
   FeelPush();
   CountOn();
   monitor.Update(Context().now);

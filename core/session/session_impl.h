@@ -20,7 +20,8 @@ struct Session::Impl {
 
   // session.cc
   explicit Impl(SessionConfig config);
-  void Sense();
+  /// Valid until the next call.
+  const SensorReading& Sense();
   void Tick();
   FingerSet GraspFingers() const;
   ActivityContext Context();
@@ -48,7 +49,7 @@ struct Session::Impl {
   bool job_running() const { return job.id != 0 && job.state == JobState::kRunning; }
 
   // feel.cc: the object's surface, from what the controller believes
-  void Feel();
+  void Feel(const SensorReading& reading);
   void FeelFriction();
   void FeelPush();
   /// What this tick goes by: parameters.control, with the friction that was felt where landings are

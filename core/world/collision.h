@@ -6,7 +6,6 @@
 
 #include <ode/ode.h>
 
-#include <memory>
 #include <vector>
 
 #include "core/common/fixed_vector.h"
@@ -14,7 +13,7 @@
 #include "core/hand/hand_model.h"
 #include "core/hand/object_model.h"
 #include "core/world/articulation.h"
-#include "core/world/surface_mesh.h"
+#include "core/world/object_part.h"
 
 namespace regrasp {
 
@@ -34,21 +33,6 @@ struct LinkHit {
 };
 
 inline constexpr int kMaxLinkHits = 32;
-
-/// A mesh as ODE holds it; only read once it is made.
-class OdeMesh {
- public:
-  OdeMesh(const std::vector<Vector3d>& vertices_O, const std::vector<Eigen::Vector3i>& triangles);
-  ~OdeMesh() { dGeomTriMeshDataDestroy(data_); }
-  OdeMesh(const OdeMesh&) = delete;
-  OdeMesh& operator=(const OdeMesh&) = delete;
-  dTriMeshDataID data() const { return data_; }
-
- private:
-  std::vector<double> vertices_;
-  std::vector<dTriIndex> indices_;
-  dTriMeshDataID data_;
-};
 
 class Collider {
  public:
@@ -71,35 +55,13 @@ class Collider {
                FixedVector<LinkHit, kMaxLinkHits>* link_hits);
 
  private:
-  struct Part {
-    dGeomID geom = nullptr;
-    dBodyID body = nullptr;
-    int link = -1;
-    bool box = false;
-    Vector3d p_BM = Vector3d::Zero();  // middle of the bounding sphere in the body (static: in W)
-    Vector3d p_BA = Vector3d::Zero(),
-             p_BC = Vector3d::Zero();          // capsule: ends of the segment, as p_BM
-    double radius = 0;                         // capsule [m]
-    double bound = 0;                          // its radius [m]
-    Isometry3d X_WS = Isometry3d::Identity();  // static box
-    Vector3d half = Vector3d::Zero();
-    Vector3d p_WM = Vector3d::Zero();  // this step
-  };
   struct Pair {
     int a = 0, b = 0;
   };
 
-  bool MayTouch(const Part& a, const Part& b) const;
-  int ObjectContacts(const Part& part, dContactGeom* out) const;
-  int MeshContact(const Part& part, dContactGeom* out) const;
-  static int Contacts(const Part& a, const Part& b, dContactGeom* out);
-
-  std::vector<Part> parts_;
+  std::vector<CollisionPart> parts_;
   std::vector<Pair> pairs_;
-  Part object_;
-  // Of a mesh object, shared by all worlds of it: against capsules, against boxes.
-  std::shared_ptr<const SurfaceMesh> surface_;
-  std::shared_ptr<const OdeMesh> mesh_;
+  ObjectPart object_;
 };
 
 }  // namespace regrasp

@@ -17,7 +17,7 @@ const ParameterInfo& Row(const Command& command) {
 
 Json Entry(const Service& service, const ParameterInfo& info) {
   const Vector3d value = info.get(service.accepted().parameters);
-  const Vector3d standard = info.get(service.DefaultValues());
+  const Vector3d standard = info.get(service.accepted().defaults);
   return {{"name", info.name},
           {"value", ParameterValueJson(info, value)},
           {"default", ParameterValueJson(info, standard)},
@@ -141,7 +141,7 @@ Outcome ParamLoad(Service& service, const Params& params, Client&) {
 
 Outcome ParamReset(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kParameter);
-  const Parameters defaults = service.DefaultValues(), before = service.accepted().parameters;
+  const Parameters defaults = service.accepted().defaults, before = service.accepted().parameters;
   std::vector<Command> commands;
   for (std::size_t i = 0; i < ParameterTable().size(); ++i) {
     const ParameterInfo& info = ParameterTable()[i];

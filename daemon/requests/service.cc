@@ -47,23 +47,13 @@ void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
 }
 
 Service::Accepted& Service::Accept() {
-  status_.Forget();
+  ++accepted_changes_;
   return accepted_;
 }
 
-Parameters& Service::AcceptParameters() {
-  ForgetTopics();
-  return accepted_.parameters;
-}
-
 std::shared_ptr<Recorder> Service::SetRecorder(std::shared_ptr<Recorder> recorder) {
-  status_.Forget();
+  ++recorder_changes_;
   return std::exchange(recorder_, std::move(recorder));
-}
-
-void Service::ForgetTopics() {
-  topics_.clear();
-  status_.Forget();
 }
 
 Outcome Service::Call(const std::string& method, const JsonIn& params, Client* client) {
@@ -89,13 +79,16 @@ Json Service::JobAnswer(const JobRecord& job) const {
 }
 
 const Sample& Service::Topic(const std::string& topic) {
+  if (std::exchange(topics_made_, changes()) != changes()) {
+    topics_.clear();
+    status_.reset();
+  }
   Sample& sample = topics_[topic];
   const Frame& frame = newest_.frame;
   sample.time_s = frame.time_s;
   if (topic == "status") {
-    if (std::exchange(jobs_written_, jobs_.changes()) != jobs_.changes()) status_.Forget();
-    if (!status_.known()) status_.Write(*this);
-    sample.fields = status_.Fields(*this);
+    if (!status_) status_.emplace(*this);
+    sample.fields = status_->Fields(*this);
     return sample;
   }
   if (!sample.fields.empty()) return sample;
@@ -139,12 +132,11 @@ std::vector<std::string> Service::Names(NameSource source) const {
 
 void Service::SetDefaults() {
   const Parameters defaults = DefaultParameters(config_.control.session.model);
-  defaults_ = ParametersAfterReset(defaults, accepted_.object.get());
-  status_.Forget();
+  Accept().defaults = ParametersAfterReset(defaults, accepted_.object.get());
 }
 
 Json Service::ChangedParameters() const {
-  const Parameters& defaults = DefaultValues();
+  const Parameters& defaults = accepted_.defaults;
   Json changed = Json::object();
   for (const ParameterInfo& info : ParameterTable())
     if (info.get(accepted_.parameters) != info.get(defaults))
@@ -153,7 +145,8 @@ Json Service::ChangedParameters() const {
 }
 
 std::string Service::SourceOfValue(const ParameterInfo& info) const {
-  if (info.get(accepted_.parameters) == info.get(DefaultValues())) return std::string(info.source);
+  if (info.get(accepted_.parameters) == info.get(accepted_.defaults))
+    return std::string(info.source);
   const auto origin = config_.parameter_origins.find(std::string(info.name));
   if (origin != config_.parameter_origins.end()) return "configuration, " + origin->second;
   return IsSetByPreset(info) && info.get(accepted_.parameters) == info.get(PresetValues())
@@ -162,7 +155,7 @@ std::string Service::SourceOfValue(const ParameterInfo& info) const {
 }
 
 Parameters Service::PresetValues() const {
-  Parameters values = DefaultValues();
+  Parameters values = accepted_.defaults;
   for (const ParameterInfo& info : ParameterTable())
     if (IsPreset(info)) SetByUser(info, info.get(accepted_.parameters), &values);
   return values;

@@ -122,11 +122,13 @@ class Service {
   Json JobAnswer(const JobRecord& job) const;
 
   /// The present value of a subscription topic other than events, or of kFrameQuality; valid until
-  /// the next call. Made once for all who ask until a new frame has come in or something was
-  /// accepted; of `status` all but what changes by itself.
+  /// the next call. Made once for all who ask until changes() grows; of `status` all but what
+  /// changes by itself.
   const Sample& Topic(const std::string& topic);
-  /// Topics are written anew: something that they show has changed.
-  void ForgetTopics();
+  /// Grows with every change of what topics show: the one place that says what that is.
+  std::uint64_t changes() const {
+    return frame_number_ + accepted_changes_ + jobs_.changes() + recorder_changes_ + incidents_;
+  }
   /// Changes whenever a new frame has come in.
   std::uint64_t frame_number() const { return frame_number_; }
 
@@ -178,6 +180,8 @@ class Service {
   /// Values as accepted, which the simulation may not have seen yet (it has after its next tick).
   struct Accepted {
     Parameters parameters;
+    /// What these are unless somebody changes them: built in, or of the present models.
+    Parameters defaults;
     NoiseLevels noise;
     std::uint64_t seed = 1;
     std::shared_ptr<const ObjectModel> object;
@@ -186,15 +190,11 @@ class Service {
     bool paused = false;
   };
   const Accepted& accepted() const { return accepted_; }
-  /// To change any of them but the parameters: `status` is written anew.
+  /// To change any of them.
   Accepted& Accept();
-  /// To change the parameters: all topics are written anew.
-  Parameters& AcceptParameters();
   void AcceptObject(std::shared_ptr<const ObjectModel> object);
 
-  /// What the parameters are unless somebody changes them: built in, or of the present models.
-  const Parameters& DefaultValues() const { return defaults_; }
-  /// The parameters that differ from that: {NAME: value}.
+  /// The parameters that differ from their defaults: {NAME: value}.
   Json ChangedParameters() const;
   /// Where the present value comes from: the table's source while it is the default.
   std::string SourceOfValue(const ParameterInfo& info) const;
@@ -257,15 +257,17 @@ class Service {
   std::multimap<std::uint64_t, std::function<void()>> after_taken_;
   const std::shared_ptr<ModelText> model_text_ = std::make_shared<ModelText>();
   Accepted accepted_;
-  Parameters defaults_;
+  std::uint64_t accepted_changes_ = 0;
   std::shared_ptr<Recorder> recorder_;
+  std::uint64_t recorder_changes_ = 0;
   History history_;
   std::deque<std::string> events_;
   std::vector<Sample> news_;                           ///< events since the last Drain()
   std::map<std::string, Sample, std::less<>> topics_;  ///< as Topic() gives them
-  StatusText status_;
-  std::uint64_t jobs_written_ = 0;  ///< JobTable::changes() as status_ has them
+  std::optional<StatusText> status_;
+  std::uint64_t topics_made_ = 0;  ///< changes() as the topics have them
   std::shared_ptr<const Incident> incident_;
+  std::uint64_t incidents_ = 0;
   Json incident_summary_;
   std::string incident_file_;  ///< the record of the last one; empty: it could not be written
   std::map<std::int64_t, Json> job_incidents_;  ///< summaries by job

@@ -84,7 +84,7 @@ std::uint64_t Service::SetParameters(std::vector<Command> commands) {
   std::uint64_t barrier = 0;
   for (const Command& command : commands) {
     barrier = PostCommand(command);
-    SetParameter(&AcceptParameters(), command);
+    SetParameter(&Accept().parameters, command);
     config_.parameter_origins.erase(std::string(RowOf(command).name));
   }
   for (const ParameterInfo& info : ParameterTable())

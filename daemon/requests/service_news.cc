@@ -40,7 +40,7 @@ std::vector<Sample> Service::Drain() {
     history_.Add(published.frame);
     if (recorder_) recorder_->Add(published);
     newest_ = published;
-    ForgetTopics();
+    ++frame_number_;
   }
   for (const PublishedEvent& published : news) {
     const Event& event = published.event;
@@ -58,7 +58,6 @@ std::vector<Sample> Service::Drain() {
   }
   SaveStateIfDue();
   if (fresh) {
-    ++frame_number_;
     MeasureSpeed();
     if (newest_.frame.job.id != 0) jobs_.Update(newest_.frame.job);
     if (newest_.step.id != 0) jobs_.Update(newest_.step);
@@ -145,7 +144,7 @@ void Service::TakeIn(const JournalNews& news) {
       SetDefaults();
       if (!news.start->restored) break;
       config_.stepper_reason = "that of the checkpoint's run";
-      AcceptParameters() = news.start->parameters;
+      Accept().parameters = news.start->parameters;
       Accept().noise = news.start->noise;
       Accept().seed = news.start->seed;
       AcceptObject(std::make_shared<const ObjectModel>(journal_.config.model.object));
@@ -207,7 +206,7 @@ void Service::RecordIncident(const Event& event) {
                        {"seed", newest_.frame.seed}, {"cause", incident->cause},
                        {"record", record.string()},  {"picture", picture.string()}};
   if (incident->job.id != 0) job_incidents_[incident->job.id] = incident_summary_;
-  status_.Forget();
+  ++incidents_;
   if (job_incidents_.size() > JobTable::kKept) job_incidents_.erase(job_incidents_.begin());
   spdlog::warn("{}", incident->cause);
   try {

@@ -88,7 +88,7 @@ std::uint64_t PostReset(Service& service, std::uint64_t seed,
   request.object = object;
   const std::uint64_t barrier = service.Post(std::move(request));
   service.Accept().seed = seed;
-  Parameters& parameters = service.AcceptParameters();
+  Parameters& parameters = service.Accept().parameters;
   parameters = ParametersAfterReset(parameters, object.get());
   if (object) service.AcceptObject(object);
   return barrier;

@@ -60,11 +60,9 @@ Json UntilCounts(const Service& service) {
 
 }  // namespace
 
-void StatusText::Write(const Service& service) {
-  pieces_[1] = Members(UntilCounts(service));
-  pieces_[2] = Members({{"output_dir", service.config().output_dir.string()}});
-  pieces_[0] = Members(UntilTimes(service));
-}
+StatusText::StatusText(const Service& service)
+    : pieces_{Members(UntilTimes(service)), Members(UntilCounts(service)),
+              Members({{"output_dir", service.config().output_dir.string()}})} {}
 
 std::string StatusText::Fields(const Service& service) const {
   const ControlLoop& control = service.control();

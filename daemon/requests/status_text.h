@@ -1,7 +1,7 @@
 #pragma once
 
-/// `status` as text. Most of it stays the same until a new frame comes in or something is accepted,
-/// and is written once; what changes by itself (times, counts) is put in between.
+/// `status` as text. Most of it stays the same until Service::changes() grows, and is written once;
+/// what changes by itself (times, counts) is put in between.
 
 #include <array>
 #include <string>
@@ -14,11 +14,8 @@ class Service;
 
 class StatusText {
  public:
-  /// What was written is of the past.
-  void Forget() { pieces_[0].clear(); }
-  bool known() const { return !pieces_[0].empty(); }
-  void Write(const Service& service);
-  /// The members of the object as of now; Write() has been called.
+  explicit StatusText(const Service& service);
+  /// The members of the object as of now.
   std::string Fields(const Service& service) const;
 
  private:

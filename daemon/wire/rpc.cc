@@ -198,10 +198,6 @@ Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error) {
            {{"code", static_cast<int>(error.code)}, {"message", error.message}, {"data", data}}}};
 }
 
-Json NotificationMessage(std::string_view method, Json params) {
-  return {{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}};
-}
-
 std::string ToText(const Json& message) {
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -68,8 +68,6 @@ RpcError InternalError(const std::exception& e);
 /// writes null.
 std::string ResultText(const std::optional<RequestId>& id, std::string_view result);
 Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error);
-/// A notification.
-Json NotificationMessage(std::string_view method, Json params);
 
 /// Text that is not UTF-8 is replaced, never thrown about.
 std::string ToText(const Json& message);

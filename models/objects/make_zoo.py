@@ -11,12 +11,9 @@ import itertools
 import math
 import os
 
+from solid import det, icosahedron, moments
+
 MASS = 0.080  # kg
-
-
-def det(p, q, r):
-    return (p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0])
-            + p[2] * (q[0] * r[1] - q[1] * r[0]))
 
 
 def unit(p):
@@ -44,15 +41,9 @@ class Builder:
 
 
 def icosphere(place, n=6):
-    g = (1 + math.sqrt(5)) / 2
-    corners = []
-    for s, t in itertools.product((1, -1), repeat=2):
-        corners += [(0, s, t * g), (s, t * g, 0), (t * g, 0, s)]
-    near = lambda p, q: abs(sum((a - b) ** 2 for a, b in zip(p, q)) - 4) < 1e-9
+    corners, faces = icosahedron()
     mesh = Builder(place)
-    for f in itertools.combinations(range(12), 3):
-        if not all(near(corners[i], corners[j]) for i, j in itertools.combinations(f, 2)):
-            continue
+    for f in faces:
         p, q, r = (corners[i] for i in f)
         at = lambda i, j: unit([p[c] + (q[c] - p[c]) * i / n + (r[c] - p[c]) * j / n for c in range(3)])
         for i in range(n):
@@ -226,21 +217,6 @@ ZOO = {
     "bumpy_lopsided": lambda: bumpy(24, 2.2, 2.0, 2),
     "knobbly": lambda: knobbly(24, 2.5),
 }
-
-
-def moments(points, triangles):
-    """Volume, centroid and second moments of the solid: sums over tetrahedra from the origin."""
-    volume, first, second = 0.0, [0.0] * 3, [[0.0] * 3 for _ in range(3)]
-    for t in triangles:
-        p = [points[i] for i in t]
-        v = det(*p) / 6
-        volume += v
-        total = [sum(q[c] for q in p) for c in range(3)]
-        for c in range(3):
-            first[c] += v * total[c] / 4
-            for d in range(3):
-                second[c][d] += v / 20 * (total[c] * total[d] + sum(q[c] * q[d] for q in p))
-    return volume, [m / volume for m in first], second
 
 
 URDF = """<?xml version="1.0"?>

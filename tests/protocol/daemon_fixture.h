@@ -157,7 +157,10 @@ class SteppedDaemonTest : public DaemonTest {
     client = Connect();
   }
   Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
-  void Step(int ticks) { Wait(client->Result("step", {{"ticks", ticks}})["job"]); }
+  void Step(int ticks) {
+    const Json record = Wait(client->Result("step", {{"ticks", ticks}})["job"]);
+    EXPECT_EQ(record["state"], "done") << record.dump();
+  }
 
   std::unique_ptr<TestClient> client;
 };

@@ -18,17 +18,14 @@ std::string Bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-class Incidents : public DaemonTest {
+class Incidents : public SteppedDaemonTest {
  protected:
   void SetUp() override {
-    Start();
-    client = Connect();
+    SteppedDaemonTest::SetUp();
     client->Result("grasp");
     Step(6000);
     ASSERT_EQ(client->Result("status")["state"], "holding");
   }
-  Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
-  void Step(int ticks) { Wait(client->Result("step", {{"ticks", ticks}})["job"]); }
   /// In small steps, so that no frame is lost however loaded the machine is. Friction 0.05 cannot
   /// carry the weight: friction times the force cap of every finger is less.
   void Drop() {
@@ -50,7 +47,6 @@ class Incidents : public DaemonTest {
       count += entry.path().filename().string().starts_with("incident-");
     return count;
   }
-  std::unique_ptr<TestClient> client;
 };
 
 TEST_F(Incidents, AreNotMadeWithoutADrop) {

@@ -8,19 +8,7 @@
 namespace regrasp::test {
 namespace {
 
-class Jobs : public DaemonTest {
- protected:
-  void SetUp() override {
-    Start();
-    client = Connect();
-  }
-  Json Wait(const Json& job) { return client->Result("job.wait", {{"id", job}}); }
-  void Step(int ticks) {
-    const Json record = Wait(client->Result("step", {{"ticks", ticks}})["job"]);
-    EXPECT_EQ(record["state"], "done") << record.dump();
-  }
-  std::unique_ptr<TestClient> client;
-};
+class Jobs : public SteppedDaemonTest {};
 
 TEST_F(Jobs, AreQueuedWhilePausedAndStartAtTheNextTick) {
   const Json job = client->Result("grasp")["job"];

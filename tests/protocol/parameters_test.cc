@@ -7,13 +7,8 @@
 namespace regrasp::test {
 namespace {
 
-class ParameterRequests : public DaemonTest {
+class ParameterRequests : public SteppedDaemonTest {
  protected:
-  void SetUp() override {
-    config.paused = true;
-    Start();
-    client = Connect();
-  }
   Json Get(const char* name) { return client->Result("param.get", {{"name", name}}); }
   /// Names of the parameters that differ from their defaults.
   std::vector<std::string> Changed() {
@@ -22,7 +17,6 @@ class ParameterRequests : public DaemonTest {
     for (const Json& p : list) names.push_back(p["name"]);
     return names;
   }
-  std::unique_ptr<TestClient> client;
 };
 
 using Names = std::vector<std::string>;

@@ -7,14 +7,7 @@
 namespace regrasp::test {
 namespace {
 
-class Requests : public DaemonTest {
- protected:
-  void SetUp() override {
-    Start();
-    client = Connect();
-  }
-  std::unique_ptr<TestClient> client;
-};
+class Requests : public SteppedDaemonTest {};
 
 TEST_F(Requests, AnswerWithTheRightCode) {
   struct Case {

@@ -4,57 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
-#include "core/hand/scenario.h"
 #include "core/hand/taxels.h"
+#include "tests/unit/sensing/sensors_fixture.h"
 
 namespace regrasp {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-
-/// Every finger presses once on the object, with a normal of its own.
-class SensorsTest : public testing::Test {
- protected:
-  SensorsTest() : hand_(LoadScenario("shadow", "sphere", ModelSearchPath()).hand) {
-    truth_.q = JointVector::LinSpaced(hand_.num_joints(), 0.1, 0.7);
-    truth_.qdot = truth_.torque = JointVector::Zero(hand_.num_joints());
-    truth_.p_WO = Vector3d(0.01, -0.06, 0.1);
-    truth_.q_WO = FromRotationVector(Vector3d(0.3, -0.2, 0.5));
-    ForwardKinematics(hand_, truth_.q, &kinematics_);
-    for (int f = 0; f < hand_.num_fingers(); ++f) {
-      ObjectContact contact;
-      contact.finger = f;
-      contact.link = hand_.fingers[f].tip_link;
-      contact.normal_W = Vector3d(0.3 * f - 0.5, 0.4, 0.2 * f - 0.7).normalized();
-      contact.p_WC =
-          FingertipCentre(hand_, kinematics_, f) - hand_.fingers[f].tip_radius * contact.normal_W;
-      contact.force_W = -(0.5 + f) * contact.normal_W;
-      truth_.contacts.push_back(contact);
-    }
-  }
-  /// Calls `visit` with `count` readings, one per tick.
-  void Collect(const NoiseLevels& levels, int count,
-               const std::function<void(const SensorReading&)>& visit, std::uint64_t seed = 7) {
-    Sensors sensors(hand_, 1e-3, seed);
-    sensors.SetNoise(levels);
-    for (int tick = 0; tick < count; ++tick) visit(sensors.Read(tick, truth_));
-  }
-
-  HandModel hand_;
-  WorldState truth_;
-  KinematicsData kinematics_;
-};
-
-struct Moments {
-  double sum = 0, sum2 = 0;
-  int n = 0;
-  void Add(double x) { sum += x, sum2 += x * x, ++n; }
-  double mean() const { return sum / n; }
-  double sigma() const { return std::sqrt(sum2 / n - mean() * mean()); }
-};
 
 /// Sample mean within 5 standard errors; sample sigma within 5 of its own, sigma / sqrt(2 n).
 void ExpectWhite(const Moments& m, double sigma, const char* what) {
@@ -310,92 +268,6 @@ TEST(NoisePresets, NamesRoundTrip) {
   NoiseLevels custom = *NoisePreset("paper");
   custom.force_n *= 2;
   EXPECT_EQ(NoiseName(custom), "custom");
-}
-
-TEST_F(SensorsTest, BiasesStayInTheFingertipAndFollowTheSeed) {
-  NoiseLevels levels;
-  levels.position_bias_m = 0.001;
-  levels.force_bias_n = 0.1;
-  levels.joint_bias_rad = 0.01;
-  levels.object_bias_m = 0.002;
-  const Vector3d truth_p = TrueFingertip(truth_, 0).p_WC;
-  const auto offset_L = [&](const SensorReading& reading) {
-    return Vector3d(kinematics_.X_WL[hand_.fingers[0].tip_link].linear().transpose() *
-                    (reading.fingertips[0].p_WC - truth_p));
-  };
-  std::vector<Vector3d> of_seed;
-  for (std::uint64_t seed : {7, 8}) {
-    Vector3d first = Vector3d::Zero();
-    int n = 0;
-    Collect(
-        levels, 50,
-        [&](const SensorReading& reading) {
-          if (n++ == 0) first = offset_L(reading);
-          EXPECT_LT((offset_L(reading) - first).norm(), 1e-12);
-          EXPECT_GT((reading.q - truth_.q).norm(), 1e-4);
-          EXPECT_GT((reading.p_WO - truth_.p_WO).norm(), 1e-5);
-        },
-        seed);
-    EXPECT_GT(first.norm(), 1e-5);
-    EXPECT_LT(first.norm(), 0.006);
-    of_seed.push_back(first);
-  }
-  EXPECT_GT((of_seed[0] - of_seed[1]).norm(), 1e-5);
-}
-
-TEST_F(SensorsTest, DriftGrowsWithTheRootOfTime) {
-  NoiseLevels levels;
-  levels.position_drift_m = 0.001;
-  levels.object_drift_m = 0.002;
-  Moments contact, object;
-  const Vector3d truth_p = TrueFingertip(truth_, 1).p_WC;
-  for (std::uint64_t seed = 0; seed < 300; ++seed)
-    Collect(
-        levels, 1000,
-        [&](const SensorReading& reading) {
-          if (reading.tick != 999) return;
-          for (int k = 0; k < 3; ++k) {
-            contact.Add(reading.fingertips[1].p_WC[k] - truth_p[k]);
-            object.Add(reading.p_WO[k] - truth_.p_WO[k]);
-          }
-        },
-        seed);
-  EXPECT_NEAR(contact.sigma(), 0.001, 0.0001);  // 4 of its own standard errors
-  EXPECT_NEAR(object.sigma(), 0.002, 0.0002);
-}
-
-TEST_F(SensorsTest, DropoutsTakeTheirShareInGapsOfTheirLength) {
-  NoiseLevels levels;
-  levels.dropout = 0.2;
-  levels.dropout_gap_s = 0.02;
-  int out = 0, gaps = 0;
-  bool before = false;
-  constexpr int kTicks = 200000;
-  Collect(levels, kTicks, [&](const SensorReading& reading) {
-    const bool now = !reading.fingertips[2].in_contact;
-    out += now;
-    gaps += now && !before;
-    before = now;
-  });
-  EXPECT_NEAR(static_cast<double>(out) / kTicks, 0.2, 0.02);
-  EXPECT_NEAR(1e-3 * out / gaps, 0.02, 0.002);
-}
-
-TEST_F(SensorsTest, LatencyReportsWhatWasFeltBefore) {
-  NoiseLevels levels;
-  levels.latency_s = 0.005;
-  Sensors sensors(hand_, 1e-3, 7);
-  sensors.SetNoise(levels);
-  std::vector<double> felt, reported;
-  for (int tick = 0; tick < 40; ++tick) {
-    truth_.contacts[0].force_W = -(1 + 0.1 * tick) * truth_.contacts[0].normal_W;
-    felt.push_back(TrueFingertip(truth_, 0).force);
-    reported.push_back(sensors.Read(tick, truth_).fingertips[0].force);
-  }
-  for (int tick = 5; tick < 40; ++tick) EXPECT_DOUBLE_EQ(reported[tick], felt[tick - 5]);
-  levels.latency_s = 0;
-  sensors.SetNoise(levels);
-  EXPECT_DOUBLE_EQ(sensors.Read(40, truth_).fingertips[0].force, felt[39]);
 }
 
 }  // namespace

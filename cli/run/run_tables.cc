@@ -1,0 +1,72 @@
+#include "cli/run/run_tables.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "core/files/names.h"
+#include "core/journal/checked_json.h"
+#include "core/journal/journal.h"
+#include "core/journal/run_messages.h"
+
+namespace regrasp::run {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Units by the end of a field's name; longer ends first.
+constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+    {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_m", "1/m"}, {"_nm", "N m"},
+    {"_rad", "rad"},     {"_n", "N"},     {"_m", "m"},     {"_s", "s"}};
+
+void AddMessage(const std::string& path, const McapMessage& message, RunTables* run) {
+  if (!IsTabular(message.topic)) return;
+  CheckFileName(path, "topic", message.topic);
+  Json json = ParseFileJson(message.data);
+  if (!json.is_object()) throw JournalError("a message that is no object");
+  for (const auto& [field, value] : json.items()) CheckFileName(path, "field", field);
+  if (message.topic == "run") {  // models: only the names of joints and fingers are needed here
+    const Json& hand = json.at("model").at("hand");
+    run->joints.clear();
+    run->fingers.clear();
+    for (const Json& joint : hand.at("joints")) run->joints.push_back(joint.at("name"));
+    for (const Json& finger : hand.at("fingers")) run->fingers.push_back(finger.at("name"));
+    json.erase("model");
+  }
+  run->topics[std::string(message.topic)].push_back(std::move(json));
+}
+
+}  // namespace
+
+void CheckFileName(const std::string& path, const char* what, std::string_view name) {
+  if (const std::string fault = FileNameFault(name); !fault.empty())
+    throw std::runtime_error(
+        fmt::format("{}: {} '{}' is no name: it {}", path, what, Shown(name), fault));
+}
+
+std::string_view UnitOf(std::string_view field) {
+  for (const auto& [end, unit] : kUnits)
+    if (field.ends_with(end)) return unit;
+  return "";
+}
+
+RunTables ReadTables(const std::string& path, const Source& source, McapSummary* summary) {
+  RunTables run;
+  std::string topic;
+  try {
+    *summary = source([&](const McapMessage& message) {
+      topic = message.topic;
+      AddMessage(path, message, &run);
+    });
+  } catch (const nlohmann::json::exception& e) {
+    throw std::runtime_error(fmt::format("{}: a message of topic '{}' is not as expected: {}", path,
+                                         Shown(topic), e.what()));
+  } catch (const JournalError& e) {
+    throw std::runtime_error(fmt::format("{}: topic '{}': {}", path, Shown(topic), e.what()));
+  }
+  if (!run.topics.contains("run")) throw std::runtime_error(path + " holds no run");
+  return run;
+}
+
+}  // namespace regrasp::run

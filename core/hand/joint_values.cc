@@ -1,0 +1,48 @@
+#include "core/hand/joint_values.h"
+
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace regrasp {
+
+void JointValues::Fill(const UrdfJoint& in, Joint* joint) {
+  const bool whole_turn = in.type == UrdfJoint::Type::kContinuous;
+  joint->lower = whole_turn ? -M_PI : in.lower;
+  joint->upper = whole_turn ? M_PI : in.upper;
+  if (in.mimic && !(in.lower < in.upper)) {  // its driver's limits are its own
+    joint->lower = -2 * M_PI;
+    joint->upper = 2 * M_PI;
+  }
+  joint->effort = in.effort;
+  if (in.effort == 0 && !in.mimic) {
+    joint->effort = kDefaultEffort;
+    unpowered_.push_back(in.name);
+  }
+  joint->armature = layout_.armature;
+  joint->damping = in.damping.value_or(layout_.damping);
+  if (joint->damping < layout_.least_damping) {
+    joint->damping = layout_.least_damping;
+    raised_.push_back(in.name);
+  }
+  if (whole_turn)
+    problems_->Warn(in.line, JointElement(in.name),
+                    "a continuous joint is kept within half a turn to either side");
+  if (!in.damping) undamped_.push_back(in.name);
+}
+
+void JointValues::TellDefaults() const {
+  const auto tell = [&](const std::vector<std::string>& joints, const char* what, double taken,
+                        const char* unit) {
+    if (!joints.empty())
+      problems_->Warn(0, "",
+                      fmt::format("{} for {} joints ({}); {:g} {} is taken", what, joints.size(),
+                                  fmt::join(joints, ", "), taken, unit));
+  };
+  tell(undamped_, "<dynamics damping> is missing", layout_.damping, "N m s/rad");
+  tell(raised_, "<dynamics damping> is less than the scenario's least", layout_.least_damping,
+       "N m s/rad");
+  tell(unpowered_, "<limit> effort is 0", kDefaultEffort, "N m");
+}
+
+}  // namespace regrasp

@@ -1,0 +1,66 @@
+#include "core/hand/object_pieces.h"
+
+#include <numeric>
+
+#include "core/hand/primitive_mesh.h"
+
+namespace regrasp {
+namespace {
+
+/// Throws ModelError.
+TriangleMesh MeshOf(const UrdfGeometry& geometry) {
+  switch (geometry.kind) {
+    case UrdfGeometry::Kind::kSphere:
+      return CapsuleMesh(geometry.radius, 0);
+    case UrdfGeometry::Kind::kCylinder:
+      return CylinderMesh(geometry.radius, geometry.length / 2);
+    case UrdfGeometry::Kind::kBox:
+      return BoxMesh(geometry.size);
+    case UrdfGeometry::Kind::kMesh:
+      break;
+  }
+  return LoadClosedMesh(geometry.mesh, geometry.scale);
+}
+
+}  // namespace
+
+TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::string& element,
+                        Problems* problems) {
+  TriangleMesh whole;
+  for (const UrdfCollision& piece : pieces) {
+    TriangleMesh mesh;
+    try {
+      mesh = MeshOf(piece.geometry);
+    } catch (const ModelError& error) {
+      problems->Add(piece.geometry.line, "{}: {}", element, error.what());
+      continue;
+    }
+    const int base = static_cast<int>(whole.vertices.size());
+    for (const Vector3d& v : mesh.vertices) whole.vertices.push_back(piece.X_LG * v);
+    for (const auto& t : mesh.triangles)
+      whole.triangles.push_back(t + Eigen::Vector3i::Constant(base));
+  }
+  constexpr std::size_t kMaxVertices = 200000;
+  if (problems->empty() && whole.vertices.size() > kMaxVertices)
+    problems->Add(0, "the pieces have {} vertices; allowed are at most {}", whole.vertices.size(),
+                  kMaxVertices);
+  return whole;
+}
+
+int CountPieces(const TriangleMesh& mesh) {
+  std::vector<int> up(mesh.vertices.size());
+  std::iota(up.begin(), up.end(), 0);
+  const auto top = [&](int i) {
+    while (up[static_cast<std::size_t>(i)] != i)
+      i = up[static_cast<std::size_t>(i)] =
+          up[static_cast<std::size_t>(up[static_cast<std::size_t>(i)])];
+    return i;
+  };
+  for (const Eigen::Vector3i& t : mesh.triangles)
+    for (int k = 1; k < 3; ++k) up[static_cast<std::size_t>(top(t[k]))] = top(t[0]);
+  int pieces = 0;
+  for (std::size_t i = 0; i < up.size(); ++i) pieces += up[i] == static_cast<int>(i);
+  return pieces;
+}
+
+}  // namespace regrasp

@@ -1,0 +1,150 @@
+/// URDF files as strangers bring them: each is read as it is meant, or refused with what to do.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "core/hand/urdf.h"
+#include "tests/unit/hand/wild_files.h"
+
+namespace regrasp {
+namespace {
+
+// A frame above the object, a lid and a weight, all fixed: 30 g in the middle, 10 g 40 mm away.
+TEST_F(WildTest, LinksThatAreFixedToEachOtherAreOneBody) {
+  const auto fixed = [](const char* parent, const char* child, const char* xyz) {
+    return fmt::format(
+        R"(<joint name="to_{1}" type="fixed"><parent link="{0}"/><child link="{1}"/><origin xyz="{2}"/></joint>)",
+        parent, child, xyz);
+  };
+  Write("objects/parts.urdf",
+        R"(<robot name="parts"><link name="world"/><link name="body"><inertial><mass value="0.03"/>
+<inertia ixx="1e-5" ixy="0" ixz="0" iyy="1e-5" iyz="0" izz="1e-5"/></inertial>
+<collision><geometry><box size="0.04 0.04 0.04"/></geometry></collision></link><link name="lid">
+<inertial><mass value="0.01"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>
+<inertial><mass value="7"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+<collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.04 0.02"/></geometry></collision></link>)" +
+            fixed("world", "body", "0.5 0 0") + fixed("body", "lid", "0 0 0.02") + "</robot>");
+  ModelReport report;
+  const ObjectModel object = LoadObject((root_ / "objects/parts.urdf").string(), {}, {}, &report);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(
+      report.warnings[0].Line().find("parts.urdf:5: link \"lid\": a second <inertial> is not read"),
+      std::string::npos)
+      << report.warnings[0].Line();
+  EXPECT_DOUBLE_EQ(object.mass, 0.04);
+  EXPECT_NEAR(ObjectSolid(object).volume, 0.04 * 0.04 * 0.06, 1e-9);
+  // About the common centre, 5 mm above the body's.
+  EXPECT_NEAR(object.I_OCom(0, 0), 1.1e-5 + 0.03 * 0.005 * 0.005 + 0.01 * 0.015 * 0.015, 1e-12);
+  EXPECT_NEAR(object.I_OCom(2, 2), 1.1e-5, 1e-12);
+  EXPECT_NEAR(ObjectSolid(object).centre.z(), 0.01 - 0.005, 1e-6);
+}
+
+TEST_F(WildTest, OfTwoInertialsTheFirstCountsAndTheOtherIsTold) {
+  const LoadedScenario once = LoaderTest::Load();
+  EditHand("<mass value=\"0.01\"/><inertia",
+           "<mass value=\"0.01\"/><inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" iyz=\"0\" "
+           "izz=\"1e-6\"/></inertial><inertial><mass value=\"0.5\"/><inertia");
+  const LoadedScenario twice = LoaderTest::Load();
+  EXPECT_EQ(twice.hand.links[2].mass, once.hand.links[2].mass);
+  ASSERT_EQ(twice.report.warnings.size(), once.report.warnings.size() + 1);
+  EXPECT_TRUE(std::ranges::any_of(twice.report.warnings, [](const ModelWarning& warning) {
+    return warning.Line().find("mini.urdf:9: link \"tip\": a second <inertial> is not read") !=
+           std::string::npos;
+  }));
+  EditHand("<mass value=\"0.01\"/><inertia",
+           "<mass value=\"0.01\"/><inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" iyz=\"0\" "
+           "izz=\"1e-6\"/></inertial><inertial><mass value=\"0,5\"/><inertia");
+  ExpectRefused({"mini.urdf:9", "link \"tip\"", "\"0,5\"", "finite number"});
+}
+
+// Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
+TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
+  EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"-0.29 0.001 0.17\"/>");
+  ExpectRefused({"mini.urdf:5", "link \"upper\"", "centre of mass (-0.29, 0.001, 0.17) m",
+                 "mm outside its shapes", "--inertia-from-shape"});
+  LoadOptions options;
+  options.inertia_from_shape = true;
+  const LoadedScenario computed = LoadScenario("mini", "", {root_}, options);
+  EXPECT_LT(computed.hand.links[1].p_LCom.norm(), 1e-9);
+  EXPECT_DOUBLE_EQ(computed.hand.links[1].mass, 0.03);
+  // Somewhat outside is common: motors and plates without a shape.
+  EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"0 0 0.05\"/>");
+  EXPECT_EQ(LoaderTest::Load().hand.links[1].p_LCom, Vector3d(0, 0, 0.05));
+}
+
+TEST_F(WildTest, PathsOfOtherSystems) {
+  std::string text, faces;
+  int corner = 0;
+  for (const Corners& corners : Ell()) {
+    for (const Vector3d& p : corners)
+      text += fmt::format("v {} {} {}\n", p.x() / 1e3, p.y() / 1e3, p.z() / 1e3);
+    faces += fmt::format("f {} {} {}\n", corner + 1, corner + 2, corner + 3);
+    corner += 3;
+  }
+  fs::create_directories(root_ / "objects/meshes");
+  Write("objects/meshes/ell.obj", text + faces);
+  const std::string root = fs::absolute(root_).string();
+  for (const std::string& path :
+       {std::string("meshes/ell.obj"), std::string("./meshes/../meshes/ell.obj"),
+        std::string("meshes\\ell.obj"), std::string("package://objects/meshes/ell.obj"),
+        std::string("model://objects/meshes/ell.obj"), "file://" + root + "/objects/meshes/ell.obj",
+        root + "/objects/meshes/ell.obj"}) {
+    SCOPED_TRACE(path);
+    ExpectEll(Load(fmt::format("<mesh filename=\"{}\"/>", path)));
+  }
+  const fs::path elsewhere = root_ / "elsewhere/ell_description/meshes";
+  fs::create_directories(elsewhere);
+  fs::copy(root_ / "objects/meshes/ell.obj", elsewhere);
+  const std::string mesh = "<mesh filename=\"model://ell_description/meshes/ell.obj\"/>";
+  EXPECT_NE(Refusal(mesh).find("$GAZEBO_MODEL_PATH"), std::string::npos) << Refusal(mesh);
+  ::setenv("GAZEBO_MODEL_PATH", ("/nowhere:" + root + "/elsewhere").c_str(), 1);
+  ExpectEll(Load(mesh));
+  ::unsetenv("GAZEBO_MODEL_PATH");
+}
+
+TEST_F(WildTest, WhatOtherProgramsAddIsPassedOver) {
+  const std::string sphere = "<sphere radius=\"0.02\"/>";
+  EXPECT_EQ(Load(sphere,
+                 R"(<contact><lateral_friction value="x"/>g</contact><self_collide>1</self_collide>
+<visual><geometry><xacro:shape/><mesh filename="${gone}"/></geometry><material name="red"/></visual>)",
+                 R"(<material name="red"><color rgba="1 0 0"/></material>
+<gazebo reference="object"><mu1>${mu}</mu1></gazebo><gazebo><plugin name="p" filename="lib.so"/></gazebo>
+<transmission name="t"><type>x</type></transmission>)")
+                .radius,
+            0.02);
+}
+
+TEST_F(WildTest, XacroThatHasNotBeenRunIsNamed) {
+  const std::string sphere = "<sphere radius=\"0.02\"/>";
+  std::string refusal = Refusal(sphere, "", "<xacro:property name=\"r\" value=\"1\"/>");
+  EXPECT_NE(refusal.find("thing.urdf:1: <xacro:property> in <robot>"), std::string::npos)
+      << refusal;
+  EXPECT_NE(refusal.find("run xacro over the file first"), std::string::npos) << refusal;
+  refusal = Refusal(sphere, "<xacro:ball_inertia m=\"1\"/>");
+  EXPECT_NE(refusal.find("<xacro:ball_inertia> in <link>"), std::string::npos) << refusal;
+  refusal = Refusal("<sphere radius=\"${r}\"/>");
+  EXPECT_NE(refusal.find("run xacro"), std::string::npos) << refusal;
+}
+
+TEST_F(WildTest, FilesOfOtherKindsAreNamed) {
+  const auto refusal = [&](const std::string& name) {
+    Write(name, "");
+    try {
+      LoadObject((root_ / name).string(), {});
+    } catch (const ModelError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_NE(refusal("objects/a.urdf.xacro").find("xacro FILE.xacro -o FILE.urdf"),
+            std::string::npos);
+  EXPECT_NE(refusal("objects/a.STL").find("a mesh needs one that names it"), std::string::npos);
+  EXPECT_NE(refusal("objects/a.sdf").find("SDF, MJCF and USD are not read"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace regrasp
