@@ -167,6 +167,9 @@ class ObjectReader {
       TriangleMesh mesh;
       try {
         mesh = MeshOf(piece.geometry);
+        if (mesh.unread_bytes > 0 && report_)
+          report_->warnings.push_back({problems_.file(), piece.geometry.line, element_,
+                                       UnreadBytes(piece.geometry.mesh, mesh)});
       } catch (const ModelError& error) {
         problems_.Add(piece.geometry.line, "{}: {}", element_, error.what());
         continue;

@@ -45,8 +45,6 @@ struct Element {
 
 enum class Format { kAscii, kLittle, kBig };
 
-std::string Quoted(std::string_view text) { return Shown(std::string(text)); }
-
 class Reader {
  public:
   Reader(const std::filesystem::path& file, const MeshLimits& limits) : limits_(limits) {
@@ -180,7 +178,7 @@ class Reader {
     double value = 0;
     const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || rest != word.data() + word.size())
-      FailHere(fmt::format("{} is no number", Quoted(word)));
+      FailHere(fmt::format("{} is no number", Quoted(std::string(word))));
     return value;
   }
 
