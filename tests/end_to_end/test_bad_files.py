@@ -7,9 +7,10 @@ import os
 import pathlib
 import shutil
 import struct
+import subprocess
 import unittest
 
-from harness import DaemonCase
+from harness import Case, DaemonCase, HANG_S, REGRASP, REGRASPD, SOURCE, environment
 
 MAGIC = b"\x89MCAP0\r\n"
 
@@ -127,6 +128,33 @@ class BadFiles(DaemonCase):
         for name in ("pipe", "zero"):
             self.expect(74, "checkpoint", "restore", name)
         self.expect(0, "status")
+
+
+class BadModels(Case):
+    """A file of settings or a model that would end what reads it."""
+
+    def refused(self, code, word, *words, program=REGRASP):
+        done = subprocess.run([program, *words], env=environment(), capture_output=True, timeout=HANG_S, check=False)
+        self.assertEqual(done.returncode, code, done.stderr[-500:])
+        self.assertIn(word, done.stderr)
+        self.assertNotIn(b"\x1b", done.stderr)
+
+    def test_a_key_of_many_parts(self):
+        file = self.dir / "deep.toml"
+        file.write_text("a." * 300_000 + "b = 1")
+        self.refused(2, b"nested deeper than 32", "--config", file, "--check-config", program=REGRASPD)
+        self.refused(2, b"nested deeper than 32", "param", "load", file)
+        shutil.copy(SOURCE / "models/objects/sphere.urdf", self.dir / "deep.urdf")
+        self.refused(1, b"nested deeper than 32", "object", "show", self.dir / "deep.urdf")
+
+    def test_names_that_are_none(self):
+        hand = (SOURCE / "models/hands/allegro.urdf").read_bytes()
+        for name, cause in ((b"p\xe9lm", b"is not UTF-8"), (b"p&#27;[2Jlm", b"holds a control character")):
+            file = self.dir / "hand.urdf"
+            file.write_bytes(hand.replace(b'"palm"', b'"' + name + b'"'))
+            self.refused(1, cause, "hand", "check", file)
+            self.refused(1, cause, "--json", "hand", "check", file)
+            self.refused(1, cause, "object", "show", file)
 
 
 if __name__ == "__main__":
