@@ -123,7 +123,10 @@ class BadFiles(DaemonCase):
         os.symlink("/dev/zero", self.good.parent / "zero.checkpoint")
         os.symlink("/dev/zero", self.good.parent / "zero.mcap")
         self.expect(74, "checkpoint", "restore", "many")
-        self.assertIn("good", [c["name"] for c in self.json("checkpoint", "list")["checkpoints"]])
+        shutil.copy(self.good.parent / "good.checkpoint", self.good.parent / "copy.checkpoint")
+        names = [c["name"] for c in self.json("checkpoint", "list")["checkpoints"]]
+        self.assertLessEqual({"good", "copy"}, set(names))
+        self.assertEqual(len(names), len(set(names)))  # by the files' names, whatever they call themselves
         self.assertEqual([r["file"] for r in self.json("record", "list")["recordings"]], ["good.mcap"])
         for name in ("pipe", "zero"):
             self.expect(74, "checkpoint", "restore", name)
@@ -155,6 +158,13 @@ class BadModels(Case):
             self.refused(1, cause, "hand", "check", file)
             self.refused(1, cause, "--json", "hand", "check", file)
             self.refused(1, cause, "object", "show", file)
+
+    def test_a_run_that_is_no_text(self):
+        run = self.dir / "run.mcap"
+        run.write_bytes(MAGIC + channel(1, b"run") + message(1, b'{"a": \xe9\x1b[31m'))
+        for words in (["replay", run], ["export", run, "--format", "csv", "-o", self.dir / "out"], ["video", run, "-o", self.dir / "v.mp4"]):
+            for json_flag in ([], ["--json"]):
+                self.refused(74, b"not JSON", *json_flag, *words)
 
 
 if __name__ == "__main__":
