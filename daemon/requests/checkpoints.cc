@@ -43,7 +43,7 @@ std::vector<Checkpoint> Heads(const fs::path& directory) {
     try {
       const std::string head = ReadHead(path, kMaxHead);
       heads.push_back(ParseCheckpointHead(head.substr(0, head.find('\n'))));
-      heads.back().name = path.stem().string();  // by which it is restored, also where it was copied
+      heads.back().name = path.stem().string();  // also of a copy
     } catch (const std::exception&) {
       continue;  // not one of ours, or damaged: restore tells which
     }
