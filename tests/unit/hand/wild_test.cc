@@ -374,7 +374,7 @@ TEST_F(WildTest, AMomentAboveThatOfALinksSizeIsTold) {
   const auto told = [](const LoadedScenario& loaded) {
     return std::ranges::any_of(loaded.report.warnings, [](const ModelWarning& warning) {
       return warning.Line().find(
-                 "mini.urdf:8: link \"tip\": <inertia> has the moment 0.0002 kg m²; "
+                 "mini.urdf:9: link \"tip\": <inertia> has the moment 0.0002 kg m²; "
                  "a body of its size has at most m R² = ") != std::string::npos;
     });
   };
