@@ -7,8 +7,8 @@
 
 namespace regrasp {
 
-/// The text of a TOML file. Throws std::runtime_error with path and cause: what ReadRegularFile
-/// refuses, more than 1 MiB, or a TomlFault.
+/// The text of a TOML file; of /dev/null none. Throws std::runtime_error with path and cause: what
+/// ReadRegularFile refuses, more than 1 MiB, or a TomlFault.
 std::string ReadTomlText(const std::string& path);
 
 /// What a parser that recurses must not see, or "": a zero byte, brackets or the parts of a dotted
