@@ -1,6 +1,7 @@
 // regraspd: the service. Arguments, environment and file become a DaemonConfig; the rest is Daemon.
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
@@ -61,7 +62,7 @@ void StartLog(const DaemonConfig& config) {
 }
 
 int Fail(const std::string& cause, const std::string& next, ExitCode code) {
-  fmt::print(stderr, "regraspd: {}\n", cause);
+  fmt::print(stderr, "regraspd: {}\n", ShownLines(cause));
   if (!next.empty()) fmt::print(stderr, "try: {}\n", next);
   return static_cast<int>(code);
 }
@@ -229,6 +230,9 @@ int Main(int argc, char** argv) {
 }  // namespace regrasp
 
 int main(int argc, char** argv) {
+  // Large blocks (pictures: 50 MB) go back to the system when they are freed. Left alone, glibc
+  // takes them from the heap once it has seen a few, and whatever stands above keeps them there.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   regrasp::OccupyStandardFiles();
   return regrasp::Main(argc, argv);
 }

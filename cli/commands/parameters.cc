@@ -14,6 +14,7 @@
 #include "cli/client/context.h"
 #include "cli/grammar/units.h"
 #include "core/files/draft.h"
+#include "core/files/toml_text.h"
 
 namespace regrasp::cli {
 namespace {
@@ -201,8 +202,14 @@ ParameterFile ReadFile(const std::string& file) {
     throw CliError(::access(file.c_str(), F_OK) == 0 ? kPermission : kNotFound,
                    fmt::format("{}: cannot be read", file), "regrasp param save " + file);
   ParameterFile read;
+  std::string text;
   try {
-    const toml::table root = toml::parse_file(file);
+    text = ReadTomlText(file);
+  } catch (const std::runtime_error& error) {
+    throw CliError(kUsage, error.what(), "regrasp param save OTHER_FILE, to see one");
+  }
+  try {
+    const toml::table root = toml::parse(text);
     const toml::table* table = root["parameters"].as_table();
     if (!table)
       throw CliError(kUsage, fmt::format("{}: no table [parameters]", file),

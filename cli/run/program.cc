@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "core/files/names.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
 
@@ -97,9 +98,9 @@ int RunVerb(int argc, char** argv,
     return static_cast<int>(ExitCode::kUsage);
   } catch (const std::exception& e) {
     if (command.json())
-      fmt::print(stderr, "{}\n", Json{{"error", {{"message", e.what()}}}}.dump());
+      fmt::print(stderr, "{}\n", Json{{"error", {{"message", ShownLines(e.what())}}}}.dump());
     else
-      fmt::print(stderr, "regrasp: {}\n  try: regrasp record list\n", e.what());
+      fmt::print(stderr, "regrasp: {}\n  try: regrasp record list\n", ShownLines(e.what()));
     return static_cast<int>(ExitCode::kIo);
   }
 }

@@ -76,6 +76,17 @@ std::string ShownText(std::string_view text) {
   return shown;
 }
 
+std::string ShownLines(std::string_view text) {
+  std::string shown;
+  for (;;) {
+    const std::size_t end = text.find('\n');
+    shown += ShownText(text.substr(0, end));
+    if (end == std::string_view::npos) return shown;
+    shown += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
+
 std::string NameFault(std::string_view name) {
   if (name.empty()) return "is empty";
   if (name.size() > kMaxNameBytes)

@@ -24,6 +24,9 @@ std::string Shown(std::string_view name);
 /// direction of text and what is no UTF-8 as "\x1b".
 std::string ShownText(std::string_view text);
 
+/// The same for several lines.
+std::string ShownLines(std::string_view text);
+
 /// True when the text is UTF-8 (of the shortest form, without surrogates).
 bool IsUtf8(std::string_view text);
 

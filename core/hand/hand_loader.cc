@@ -155,8 +155,12 @@ class HandReader {
       const int line = line_of_link_[l];
       const bool told = LinkAt(file_.FindLink(link.name)).inertial.has_value();
       const std::string why = WhyNoBody(link, told);
-      if (why.empty()) continue;
       const std::string element = LinkElement(link.name);
+      if (why.empty()) {
+        if (const std::string doubt = WhyUnlikely(link); !doubt.empty())
+          problems_.Warn(line, element, doubt);
+        continue;
+      }
       if (!options_.inertia_from_shape) {
         problems_.Add(line, "{}: {}; --inertia-from-shape computes what is missing", element, why);
         continue;

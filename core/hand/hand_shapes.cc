@@ -98,7 +98,7 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
   if (!options_.fill_missing_meshes) {
     problems_->Add(
         geometry.line, "{}: <mesh> filename = {}: file not found{}; --fill-missing-meshes takes {}",
-        LinkElement(in.name), Shown(geometry.mesh_name),
+        LinkElement(in.name), Quoted(geometry.mesh_name),
         beside.empty() ? "" : ", but " + beside.lexically_normal().string() + " is there",
         beside.empty() ? "a capsule along the link" : "that");
     return {};
@@ -106,7 +106,7 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
   if (!beside.empty())
     problems_->Warn(geometry.line, LinkElement(in.name),
                     fmt::format("<mesh> filename = {}: not found; {} in its place",
-                                Shown(geometry.mesh_name), beside.lexically_normal().string()));
+                                Quoted(geometry.mesh_name), beside.lexically_normal().string()));
   return beside;
 }
 
@@ -125,7 +125,7 @@ Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
       geometry.line, LinkElement(in.name),
       fmt::format("<mesh> filename = {}: not found; a capsule of {:.3g} mm radius and {:.3g} mm "
                   "segment in its place",
-                  Shown(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
+                  Quoted(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
   return shape;
 }
 
@@ -152,6 +152,8 @@ Shape HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const
   TriangleMesh posed;
   try {
     posed = *Mesh(file, geometry.scale);
+    if (posed.unread_bytes > 0)
+      problems_->Warn(geometry.line, LinkElement(in.name), UnreadBytes(file, posed));
     Eigen::AlignedBox3d box;
     for (Vector3d& v : posed.vertices) {
       v = X * v;

@@ -87,7 +87,7 @@ void HandTree::CheckMimic(int j, Problems* problems) const {
   const std::string element = JointElement(in.name);
   if (file_.FindJoint(in.mimic->joint) < 0) {
     problems->Add(in.line, "{}: <mimic> joint = {}: there is no such joint", element,
-                  Shown(in.mimic->joint));
+                  Quoted(in.mimic->joint));
     return;
   }
   const Coupling c = CouplingOf(j);

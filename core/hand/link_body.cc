@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "core/hand/solid.h"
@@ -20,6 +21,13 @@ Eigen::AlignedBox3d BoxOf(const Shape& shape) {
     const Vector3d middle = shape.X_LB.translation();
     box.extend(Eigen::AlignedBox3d(Vector3d(middle - half), Vector3d(middle + half)));
   }
+  return box;
+}
+
+/// About the shapes of a link and its joint.
+Eigen::AlignedBox3d BoxOf(const Link& link) {
+  Eigen::AlignedBox3d box(Vector3d::Zero());
+  for (const Shape& shape : link.shapes) box.extend(BoxOf(shape));
   return box;
 }
 
@@ -44,14 +52,28 @@ std::string WhyNoBody(const Link& link, bool told) {
                 : "has no <inertial>; a link that moves needs mass > 0";
   if (const std::string why = WhyNoInertia(link.I_LCom); !why.empty()) return why;
   if (link.shapes.empty()) return "";
-  Eigen::AlignedBox3d box(Vector3d::Zero());
-  for (const Shape& shape : link.shapes) box.extend(BoxOf(shape));
+  const Eigen::AlignedBox3d box = BoxOf(link);
   const double off = std::sqrt(box.squaredExteriorDistance(link.p_LCom));
   if (off <= box.diagonal().norm()) return "";
   return fmt::format(
       "the centre of mass ({:.4g}, {:.4g}, {:.4g}) m is {:.0f} mm outside its "
       "shapes, which are {:.0f} mm across",
       link.p_LCom.x(), link.p_LCom.y(), link.p_LCom.z(), 1e3 * off, 1e3 * box.diagonal().norm());
+}
+
+std::string WhyUnlikely(const Link& link) {
+  if (link.shapes.empty()) return "";
+  const Eigen::AlignedBox3d box = BoxOf(link);
+  const Vector3d farthest =
+      (box.max() - link.p_LCom).cwiseMax(link.p_LCom - box.min()).cwiseMax(Vector3d::Zero());
+  const double R = farthest.norm(), most = link.mass * R * R;
+  const double moment =
+      Eigen::SelfAdjointEigenSolver<Matrix3d>(link.I_LCom, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  if (moment <= most) return "";
+  return fmt::format(
+      "<inertia> has the moment {:.4g} kg m²; a body of its size has at most m R² = {:.4g}, "
+      "R = {:.4g} m",
+      moment, most, R);
 }
 
 void InventBody(Link* link) {

@@ -18,6 +18,11 @@ void AddBodyTo(Link* link, const UrdfInertial& body, const Isometry3d& X_LG);
 /// gives it a body.
 std::string WhyNoBody(const Link& link, bool told);
 
+/// Why a link that moves is hardly like that, or "": a moment above m R², R: from its centre of
+/// mass to the farthest corner of the box about its shapes and its joint. Shapes need not cover all
+/// of a link, so that this is no error.
+std::string WhyUnlikely(const Link& link);
+
 /// Mass (where there is none), centre and inertia of a homogeneous link of its shape.
 void InventBody(Link* link);
 

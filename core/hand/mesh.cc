@@ -112,6 +112,11 @@ void DropUnused(TriangleMesh* mesh) {
 
 }  // namespace
 
+std::string UnreadBytes(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  return fmt::format("{}: {} bytes beside its triangles are not read", file.string(),
+                     mesh.unread_bytes);
+}
+
 double Volume(const TriangleMesh& mesh) {
   double six_volumes = 0;
   for (const auto& t : mesh.triangles)
@@ -133,6 +138,7 @@ bool IsInside(const std::vector<Vector3d>& vertices, const std::vector<Eigen::Ve
 
 TriangleMesh WeldMesh(const RawMesh& raw, const Vector3d& scale) {
   TriangleMesh mesh;
+  mesh.unread_bytes = raw.unread_bytes;
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& v : raw.vertices)
     box.extend(Vector3d(v.cast<double>().cwiseProduct(scale)));

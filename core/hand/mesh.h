@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/common/frames.h"
@@ -12,6 +14,7 @@ namespace regrasp {
 struct TriangleMesh {
   std::vector<Vector3d> vertices;          ///< [m]
   std::vector<Eigen::Vector3i> triangles;  ///< counter-clockwise seen from outside
+  std::uint64_t unread_bytes = 0;          ///< RawMesh's
 };
 
 /// Corners nearer than this are one [m]; or nearer than 1e-6 of the mesh's size, if that is more.
@@ -33,6 +36,9 @@ TriangleMesh LoadClosedMesh(const std::filesystem::path& file,
 
 /// The checks of LoadClosedMesh on a welded mesh. `mirrored`: the scale was.
 void CloseMesh(const std::filesystem::path& file, bool mirrored, TriangleMesh* mesh);
+
+/// What a user is told of a mesh with unread bytes.
+std::string UnreadBytes(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 /// Volume enclosed by a closed mesh: sum over triangles of det(a, b, c) / 6.
 double Volume(const TriangleMesh& mesh);

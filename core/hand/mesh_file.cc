@@ -19,12 +19,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <system_error>
 
 #include "core/hand/ply_file.h"
+#include "core/hand/stl_file.h"
 
 namespace regrasp {
 namespace {
@@ -40,6 +41,12 @@ struct Header {
   std::uint32_t text = 0;
   std::uint64_t vertices = 0, triangles = 0;
   static constexpr std::uint32_t kMagic = 0x6d657368;
+};
+
+/// How a file is read.
+struct Kind {
+  std::string suffix;                       ///< in lower case
+  std::optional<std::uint64_t> stl_rest{};  ///< of a binary STL file: BinaryStlRest
 };
 
 // ---- in the child ----
@@ -166,7 +173,7 @@ void LimitChild(const MeshLimits& limits) {
 #endif
 }
 
-[[noreturn]] void RunChild(const std::string& file, const std::string& suffix, int out,
+[[noreturn]] void RunChild(const std::string& file, const Kind& kind, int out,
                            const MeshLimits& limits) {
   LimitChild(limits);
   const int nowhere = ::open("/dev/null", O_RDWR);
@@ -175,8 +182,10 @@ void LimitChild(const MeshLimits& limits) {
   ::dup2(out, 3);
   ::close_range(4, ~0U, 0);
   try {
-    if (suffix == ".ply")
+    if (kind.suffix == ".ply")
       SendMesh(3, ReadPly(file, limits));
+    else if (kind.stl_rest)
+      SendMesh(3, ReadBinaryStl(file, limits));
     else
       ReadByAssimp(3, file, limits);
   } catch (const std::bad_alloc&) {
@@ -256,25 +265,7 @@ std::vector<std::byte> Receive(const fs::path& file, int in, const MeshLimits& l
   return bytes;
 }
 
-/// Why a file is no STL file; empty where it is one or may be: in words, it begins with "solid".
-std::string WhyNoStl(const fs::path& file, std::uint64_t size) {
-  std::array<char, 84> head{};
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::strerror(errno);
-  in.read(head.data(), head.size());
-  if (std::string_view(head.data(), 5) == "solid") return "";
-  if (size < head.size())
-    return fmt::format("{} bytes that do not begin with \"solid\" are no STL file", size);
-  std::uint32_t triangles = 0;
-  std::memcpy(&triangles, head.data() + 80, sizeof(triangles));
-  const std::uint64_t wanted = head.size() + 50 * std::uint64_t{triangles};
-  if (size == wanted) return "";
-  return fmt::format("a binary STL file of {} triangles has {} bytes; this one has {}", triangles,
-                     wanted, size);
-}
-
-/// The suffix, in lower case.
-std::string CheckFile(const fs::path& file, const MeshLimits& limits) {
+Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
   std::string suffix = file.extension().string();
   std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::ranges::find(kSuffixes, suffix) == kSuffixes.end())
@@ -286,9 +277,12 @@ std::string CheckFile(const fs::path& file, const MeshLimits& limits) {
   if (error || size > limits.file_bytes)
     Fail(file,
          fmt::format("{} bytes; allowed are at most {}", error ? 0 : size, limits.file_bytes));
-  const std::string no_stl = suffix == ".stl" ? WhyNoStl(file, size) : "";
-  if (!no_stl.empty()) Fail(file, no_stl);
-  return suffix;
+  try {
+    if (suffix == ".stl") return {suffix, BinaryStlRest(file, size)};
+  } catch (const ModelError& why) {
+    Fail(file, why.what());
+  }
+  return {suffix};
 }
 
 }  // namespace
@@ -327,7 +321,7 @@ RawMesh DecodeMesh(const fs::path& file, std::span<const std::byte> bytes,
 }
 
 RawMesh ReadMeshFile(const fs::path& file, const MeshLimits& limits) {
-  const std::string suffix = CheckFile(file, limits);
+  const Kind kind = CheckFile(file, limits);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
     Fail(file, fmt::format("cannot start the mesh reader: {}", std::strerror(errno)));
@@ -335,7 +329,7 @@ RawMesh ReadMeshFile(const fs::path& file, const MeshLimits& limits) {
   auto out = std::make_unique<Descriptor>(ends[1]);
   const pid_t pid = ::fork();
   if (pid < 0) Fail(file, fmt::format("cannot start the mesh reader: {}", std::strerror(errno)));
-  if (pid == 0) RunChild(file.string(), suffix, ends[1], limits);
+  if (pid == 0) RunChild(file.string(), kind, ends[1], limits);
   Child child(pid);
   out.reset();
   const std::vector<std::byte> bytes = Receive(file, in.number, limits);
@@ -343,7 +337,9 @@ RawMesh ReadMeshFile(const fs::path& file, const MeshLimits& limits) {
   if (WIFSIGNALED(status))
     Fail(file, fmt::format("cannot read the mesh: the reader died of it ({})",
                            ::strsignal(WTERMSIG(status))));
-  return DecodeMesh(file, bytes, limits);
+  RawMesh mesh = DecodeMesh(file, bytes, limits);
+  mesh.unread_bytes = kind.stl_rest.value_or(0);
+  return mesh;
 }
 
 }  // namespace regrasp

@@ -3,6 +3,7 @@
 /// Mesh files as lists of triangles. The file is parsed by a child process with limits of time and
 /// memory, because a damaged file may end, hang or fill the process that reads it.
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -17,6 +18,7 @@ namespace regrasp {
 struct RawMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3i> triangles;  ///< indices into `vertices`, all in range
+  std::uint64_t unread_bytes = 0;          ///< of the file, that are no triangle's
 };
 
 struct MeshLimits {

@@ -31,6 +31,8 @@ TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::str
     TriangleMesh mesh;
     try {
       mesh = MeshOf(piece.geometry);
+      if (mesh.unread_bytes > 0)
+        problems->Warn(piece.geometry.line, element, UnreadBytes(piece.geometry.mesh, mesh));
     } catch (const ModelError& error) {
       problems->Add(piece.geometry.line, "{}: {}", element, error.what());
       continue;

@@ -49,7 +49,7 @@ class Reader {
  private:
   [[noreturn]] void Fail(const std::string& why) const { throw ModelError(why); }
   [[noreturn]] void FailHere(const std::string& why) const {
-    Fail(fmt::format("entry {} of {}: {}", entry_, Shown(element_->name), why));
+    Fail(fmt::format("entry {} of {}: {}", entry_, Quoted(element_->name), why));
   }
 
   double Next(const PlyType& type) {
@@ -83,7 +83,7 @@ class Reader {
     double value = 0;
     const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || rest != word.data() + word.size())
-      FailHere(fmt::format("{} is no number", Shown(std::string(word))));
+      FailHere(fmt::format("{} is no number", Quoted(std::string(word))));
     return value;
   }
 

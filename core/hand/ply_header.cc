@@ -22,7 +22,7 @@ constexpr PlyType kTypes[] = {{"char", "int8", 1, 'i'},     {"uchar", "uint8", 1
 const PlyType* TypeOf(const std::string& name) {
   const auto it = std::ranges::find_if(
       kTypes, [&](const PlyType& t) { return t.name == name || t.other_name == name; });
-  if (it == std::end(kTypes)) Fail(fmt::format("the header's type {} is unknown", Shown(name)));
+  if (it == std::end(kTypes)) Fail(fmt::format("the header's type {} is unknown", Quoted(name)));
   return it;
 }
 
@@ -50,15 +50,15 @@ PlyHeader ParseHeader(const std::string& text) {
         Fail(
             fmt::format("the format {} is unknown; allowed are ascii, binary_little_endian, "
                         "binary_big_endian",
-                        Shown(a)));
+                        Quoted(a)));
     } else if (word == "element") {
       PlyElement element{a, 0, {}};
       const auto [rest, error] = std::from_chars(b.data(), b.data() + b.size(), element.count);
       if (error != std::errc() || rest != b.data() + b.size())
-        Fail(fmt::format("the header's element {} has the count {}; must be 0 or more", Shown(a),
-                         Shown(b)));
+        Fail(fmt::format("the header's element {} has the count {}; must be 0 or more", Quoted(a),
+                         Quoted(b)));
       if (std::ranges::find(elements, a, &PlyElement::name) != elements.end())
-        Fail(fmt::format("the header has a second element {}", Shown(a)));
+        Fail(fmt::format("the header has a second element {}", Quoted(a)));
       elements.push_back(element);
     } else if (word == "property") {
       if (elements.empty()) Fail("the header has a property before the first element");
@@ -85,15 +85,15 @@ void CheckCounts(const PlyHeader& header, const std::string& text, const MeshLim
     const std::uint64_t most = element.name == "face" ? limits.triangles : limits.vertices;
     if (element.count > most)
       Fail(fmt::format("the header claims {} entries of {}; allowed are at most {}", element.count,
-                       Shown(element.name), most));
+                       Quoted(element.name), most));
     needed += element.count * least;
     if (needed > text.size() - header.bytes + 1)
       Fail(fmt::format("the header claims {} entries of {}: {} bytes at least; after it stand {}",
-                       element.count, Shown(element.name), needed, text.size() - header.bytes));
+                       element.count, Quoted(element.name), needed, text.size() - header.bytes));
   }
   for (const char* name : {"vertex", "face"})
     if (std::ranges::find(header.elements, name, &PlyElement::name) == header.elements.end())
-      Fail(fmt::format("the header has no element {}", Shown(name)));
+      Fail(fmt::format("the header has no element {}", Quoted(name)));
 }
 
 }  // namespace

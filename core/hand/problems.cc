@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/files/names.h"
 #include "core/hand/model_report.h"
 
 namespace regrasp {
@@ -22,7 +23,8 @@ void Problems::Warn(int line, std::string element, std::string text) {
   if (report_) report_->warnings.push_back({file_, line, std::move(element), std::move(text)});
 }
 
-void Problems::Keep(const std::string& message) {
+void Problems::Keep(const std::string& given) {
+  const std::string message = ShownLines(given);
   ++count_;
   if (messages_.size() < kShown &&
       std::find(messages_.begin(), messages_.end(), message) == messages_.end())
@@ -40,8 +42,8 @@ void Problems::ThrowIfAny() const {
 }
 
 std::string ModelWarning::Line() const {
-  return fmt::format("{}{}: {}{}{}", file, line > 0 ? fmt::format(":{}", line) : "", element,
-                     element.empty() ? "" : ": ", text);
+  return ShownText(fmt::format("{}{}: {}{}{}", file, line > 0 ? fmt::format(":{}", line) : "",
+                               element, element.empty() ? "" : ": ", text));
 }
 
 }  // namespace regrasp

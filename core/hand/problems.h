@@ -34,7 +34,8 @@ class Problems {
   const std::string& file() const { return file_; }
   bool empty() const { return count_ == 0; }
   std::size_t count() const { return count_; }
-  /// Throws a ModelError that holds every message, one a line, where there is any.
+  /// Throws a ModelError that holds every message, one a line, where there is any; as it may be
+  /// shown to people (ShownText).
   void ThrowIfAny() const;
 
  private:

@@ -5,6 +5,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/files/names.h"
 #include "core/hand/toml_file.h"
 #include "core/hand/urdf.h"
 
@@ -37,6 +38,9 @@ void ReadFingers(const TomlFile& file, HandLayout* layout) {
     file.CheckKeys(finger, {"name", "tip_link"});
     layout->fingers.push_back({file.Text(finger, "name"), file.Text(finger, "tip_link")});
     const HandLayout::Finger& read = layout->fingers.back();
+    for (const std::string* text : {&read.name, &read.tip_link})
+      if (const std::string fault = text->empty() ? "" : NameFault(*text); !fault.empty())
+        file.Add(item, "the name \"{}\" {}", *text, fault);
     if (!read.name.empty() && !names.insert(read.name).second)
       file.Add(item, "finger name \"{}\" is used twice", read.name);
     if (!read.tip_link.empty() && !tips.insert(read.tip_link).second)

@@ -3,63 +3,21 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
-#include <sstream>
+#include <stdexcept>
 
 #include "core/common/nearest_name.h"
+#include "core/files/toml_text.h"
 
 namespace regrasp {
-namespace {
-
-constexpr std::size_t kMaxBytes = 1u << 20;
-constexpr int kMaxDepth = 32;  // the parser recurses
-
-/// Whether brackets nest deeper than any table of ours needs, outside of strings and comments.
-bool TooDeep(std::string_view text) {
-  int depth = 0;
-  char quote = '\0';
-  bool comment = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (comment) {
-      comment = c != '\n';
-    } else if (quote != '\0') {
-      if (c == '\\' && quote == '"') ++i;
-      if (c == quote || c == '\n') quote = '\0';
-    } else if (c == '#') {
-      comment = true;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '[' || c == '{') {
-      if (++depth > kMaxDepth) return true;
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
 TomlFile::TomlFile(const std::filesystem::path& path) : problems_(path.string()) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text(kMaxBytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (!in.eof() || text.size() > kMaxBytes)
-    throw ModelError(
-        fmt::format("{}: cannot be read, or longer than {} bytes", path.string(), kMaxBytes));
-  if (text.find('\0') != std::string::npos)
-    throw ModelError(fmt::format("{}: not valid TOML: the file holds a zero byte", path.string()));
-  if (TooDeep(text))
-    throw ModelError(
-        fmt::format("{}: not valid TOML: nested deeper than {}", path.string(), kMaxDepth));
   try {
-    root_ = toml::parse(text);
+    root_ = toml::parse(ReadTomlText(path.string()));
   } catch (const toml::parse_error& error) {
     throw ModelError(fmt::format("{}:{}: not valid TOML: {}", path.string(),
                                  error.source().begin.line, error.description()));
+  } catch (const std::runtime_error& error) {
+    throw ModelError(error.what());
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/files/names.h"
 #include "core/hand/mesh_path.h"
 #include "core/hand/urdf_file.h"
 #include "core/hand/urdf_values.h"
@@ -26,10 +27,13 @@ class Checker {
 
   void Check(XMLElement* robot) {
     const int line = robot->GetLineNum();
-    if (robot->Attribute("name") == nullptr) problems_->Add(line, "<robot> name is missing");
+    const char* name = robot->Attribute("name");
+    if (name == nullptr) problems_->Add(line, "<robot> name is missing");
+    if (const std::string fault = name && *name ? NameFault(name) : ""; !fault.empty())
+      problems_->Add(line, "<robot> name = {} {}", Quoted(name), fault);
     if (const char* version = robot->Attribute("version");
         version != nullptr && std::string_view(version) != "1.0")
-      problems_->Add(line, "<robot> version = {}; must be \"1.0\"", Shown(version));
+      problems_->Add(line, "<robot> version = {}; must be \"1.0\"", Quoted(version));
     KeepOnly(robot, {"link", "joint"});
     for (XMLElement* node = robot->FirstChildElement("link"); node != nullptr;
          node = node->NextSiblingElement("link"))
@@ -77,6 +81,8 @@ class Checker {
       problems_->Add(node.GetLineNum(), "<{}> name is missing", node.Name());
       return "";
     }
+    if (const std::string fault = NameFault(name); !fault.empty())
+      problems_->Add(node.GetLineNum(), "the name of {} {} {}", node.Name(), Quoted(name), fault);
     const auto [it, is_new] = index->try_emplace(name, static_cast<int>(index->size()));
     if (!is_new)
       problems_->Add(node.GetLineNum(), "the name of {} \"{}\" is used twice", node.Name(), name);
@@ -162,12 +168,12 @@ class Checker {
   void CheckMesh(XMLElement* node, const UrdfValues& values) {
     if (values.Vector(node, "scale", Vector3d::Ones()).cwiseAbs().minCoeff() == 0)
       values.Add(node->GetLineNum(), "<mesh> scale = {}; no number may be 0",
-                 Shown(node->Attribute("scale")));
+                 Quoted(node->Attribute("scale")));
     const std::string name = node->Attribute("filename") ? node->Attribute("filename") : "";
     if (name.empty()) return values.Add(node->GetLineNum(), "<mesh> filename is missing");
     std::string why;
     const fs::path file = ResolveMesh(path_, name, &why);
-    if (!why.empty()) values.Add(node->GetLineNum(), "<mesh> filename = {}: {}", Shown(name), why);
+    if (!why.empty()) values.Add(node->GetLineNum(), "<mesh> filename = {}: {}", Quoted(name), why);
     node->SetAttribute("written", name.c_str());
     node->SetAttribute("filename", file.c_str());
   }
@@ -181,7 +187,7 @@ class Checker {
     }
     const auto it = link_index_.find(name);
     if (it == link_index_.end()) {
-      values.Add(node->GetLineNum(), "<{}> link = {}: there is no such link", end, Shown(name));
+      values.Add(node->GetLineNum(), "<{}> link = {}: there is no such link", end, Quoted(name));
       return -1;
     }
     return it->second;
@@ -201,7 +207,7 @@ class Checker {
     if (type != nullptr && std::ranges::find(kTypes, type) == std::end(kTypes))
       values.Add(node->GetLineNum(),
                  "type = {} is unknown; allowed are revolute and fixed, and continuous",
-                 Shown(type));
+                 Quoted(type));
     if (type == nullptr || type == std::string_view("fixed"))
       return KeepOnly(node, {"parent", "child", "origin"});
     KeepOnly(node, {"parent", "child", "origin", "axis", "limit", "dynamics", "mimic"});

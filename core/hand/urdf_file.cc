@@ -11,6 +11,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "core/files/names.h"
 #include "core/hand/model_xml.h"
 #include "core/hand/urdf_check.h"
 
@@ -73,7 +74,7 @@ urdf::ModelInterfaceSharedPtr BuildModel(const fs::path& path, const XMLElement&
   if (why.empty()) why = log.text();
   if (!model || !why.empty())
     throw ModelError(fmt::format("{}: not a valid URDF: {}", path.string(),
-                                 why.empty() ? "unknown reason" : why));
+                                 why.empty() ? "unknown reason" : ShownText(why)));
   return model;
 }
 
@@ -202,13 +203,13 @@ UrdfFile ReadUrdf(const fs::path& path, Problems* problems) {
   try {
     robot = ParseXml(text, &document);
   } catch (const XmlError& error) {
-    throw ModelError(
-        fmt::format("{}:{}: not a valid URDF: {}", path.string(), error.line(), error.what()));
+    throw ModelError(fmt::format("{}:{}: not a valid URDF: {}", path.string(), error.line(),
+                                 ShownText(error.what())));
   }
   if (robot->Name() != std::string_view("robot"))
     throw ModelError(
         fmt::format("{}:{}: not a valid URDF: the root element is <{}>; must be <robot>",
-                    path.string(), robot->GetLineNum(), robot->Name()));
+                    path.string(), robot->GetLineNum(), ShownText(robot->Name())));
   CheckUrdf(path, robot, problems);
   if (!problems->empty()) return {};
   return ToFile(*robot, *BuildModel(path, *robot));

@@ -30,7 +30,7 @@ std::string Hint(const std::string& attribute, const std::vector<std::string>& w
 
 }  // namespace
 
-std::string Shown(const std::string& text) {
+std::string Quoted(const std::string& text) {
   std::string shown;
   for (const char c : text)
     if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) shown += c;
@@ -56,7 +56,7 @@ bool UrdfValues::Parse(Element* node, const char* attribute, const char* text, i
   if (good)
     node->SetAttribute(attribute, fmt::format("{}", fmt::join(words, " ")).c_str());
   else
-    Add(node->GetLineNum(), "<{}> {} = {}; must be {}{}", node->Name(), attribute, Shown(text),
+    Add(node->GetLineNum(), "<{}> {} = {}; must be {}{}", node->Name(), attribute, Quoted(text),
         count == 1 ? "a finite number" : fmt::format("{} finite numbers", count),
         Hint(attribute, words, text, count));
   return good;

@@ -18,7 +18,7 @@ namespace regrasp {
 inline constexpr double kMaxModelSize = 10;  ///< [m]; anything larger is a unit mistake
 
 /// `text` shown in a message: quoted, cut to 60 characters, without control characters.
-std::string Shown(const std::string& text);
+std::string Quoted(const std::string& text);
 
 class UrdfValues {
  public:

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/common/nesting_depth.h"
+#include "core/files/names.h"
 #include "core/journal/journal.h"
 
 namespace regrasp {
@@ -15,7 +16,7 @@ nlohmann::ordered_json ParseFileJson(std::string_view text) {
   try {
     return nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::json::exception& e) {
-    throw JournalError(std::string("not JSON: ") + e.what());
+    throw JournalError("not JSON: " + ShownText(e.what()));  // which quotes the file
   }
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/common/nearest_name.h"
+#include "core/files/toml_text.h"
 #include "core/protocol/config_path.h"
 #include "core/session/parameter_value.h"
 #include "daemon/wire/frame_json.h"
@@ -153,8 +154,14 @@ Json Value(const ConfigKey& key, const DaemonConfig& config) {
 
 void ReadConfigFile(const std::string& path, DaemonConfig* config) {
   if (::access(path.c_str(), R_OK) != 0) throw ConfigError(fmt::format("{}: cannot be read", path));
+  std::string text;
   try {
-    Reader{path, config}.Read(toml::parse_file(path));
+    text = ReadTomlText(path);
+  } catch (const std::runtime_error& error) {
+    throw ConfigError(error.what());
+  }
+  try {
+    Reader{path, config}.Read(toml::parse(text));
   } catch (const toml::parse_error& e) {
     throw ConfigError(fmt::format("{}:{}: {}", path, e.source().begin.line, e.description()));
   }

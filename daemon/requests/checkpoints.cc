@@ -35,14 +35,23 @@ fs::path PathOf(Service& service, const Params& params) {
   return service.config().output_dir / (name + std::string(kSuffix));
 }
 
-/// The checkpoints that can be read, by name. Any thread.
+/// The checkpoints of a directory, by name. Throws where one cannot be read: without it the list
+/// would lie. Any thread.
 std::vector<Checkpoint> Heads(const fs::path& directory) {
   constexpr std::uint64_t kMaxHead = 4096;  // of the first line; ours have some 400 bytes
   std::vector<Checkpoint> heads;
   for (const fs::path& path : FilesIn(directory, {kSuffix})) {
+    std::string head;
     try {
-      const std::string head = ReadHead(path, kMaxHead);
+      head = ReadHead(path, kMaxHead);
+    } catch (const std::runtime_error&) {
+      std::error_code unknown;
+      if (fs::exists(path, unknown) || unknown) throw;
+      continue;  // deleted meanwhile
+    }
+    try {
       heads.push_back(ParseCheckpointHead(head.substr(0, head.find('\n'))));
+      heads.back().name = path.stem().string();  // also of a copy
     } catch (const std::exception&) {
       continue;  // not one of ours, or damaged: restore tells which
     }
@@ -90,7 +99,8 @@ RpcException Refusal(ErrorCode code, std::string message, std::string hint) {
 std::shared_ptr<const Checkpoint> Read(const RestoreRequest& request) {
   if (!fs::exists(request.path)) {
     std::vector<std::string> names;
-    for (const Checkpoint& head : Heads(request.path.parent_path())) names.push_back(head.name);
+    for (const fs::path& path : FilesIn(request.path.parent_path(), {kSuffix}))
+      names.push_back(path.stem().string());
     std::string hint = DidYouMean(request.name, names);
     if (hint.empty()) hint = "regrasp checkpoint list";
     throw Refusal(ErrorCode::kNotFound, fmt::format("no checkpoint '{}'", request.name),

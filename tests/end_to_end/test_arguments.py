@@ -57,6 +57,7 @@ class Arguments(Case):
                                                                      check=True).stdout)))
         options.remove("--bench")
         r = random.Random(4)
+        self.run_one([str(REGRASPD), "--check-config", "\x1b[31m"], {2})
         for _ in range(COUNT // 8):
             line = [r.choice(options) if r.random() < 0.6 else r.choice([o for o in ODD if o != ""]) for _ in range(r.randrange(1, 6))]
             # Whatever is right so far, this ends it.

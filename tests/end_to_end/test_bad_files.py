@@ -7,9 +7,10 @@ import os
 import pathlib
 import shutil
 import struct
+import subprocess
 import unittest
 
-from harness import DaemonCase
+from harness import Case, DaemonCase, HANG_S, REGRASP, REGRASPD, SOURCE, environment
 
 MAGIC = b"\x89MCAP0\r\n"
 
@@ -122,11 +123,48 @@ class BadFiles(DaemonCase):
         os.symlink("/dev/zero", self.good.parent / "zero.checkpoint")
         os.symlink("/dev/zero", self.good.parent / "zero.mcap")
         self.expect(74, "checkpoint", "restore", "many")
-        self.assertIn("good", [c["name"] for c in self.json("checkpoint", "list")["checkpoints"]])
+        shutil.copy(self.good.parent / "good.checkpoint", self.good.parent / "copy.checkpoint")
+        names = [c["name"] for c in self.json("checkpoint", "list")["checkpoints"]]
+        self.assertLessEqual({"good", "copy"}, set(names))
+        self.assertEqual(len(names), len(set(names)))  # by the files' names, whatever they call themselves
         self.assertEqual([r["file"] for r in self.json("record", "list")["recordings"]], ["good.mcap"])
         for name in ("pipe", "zero"):
             self.expect(74, "checkpoint", "restore", name)
         self.expect(0, "status")
+
+
+class BadModels(Case):
+    """A file of settings or a model that would end what reads it."""
+
+    def refused(self, code, word, *words, program=REGRASP):
+        done = subprocess.run([program, *words], env=environment(), capture_output=True, timeout=HANG_S, check=False)
+        self.assertEqual(done.returncode, code, done.stderr[-500:])
+        self.assertIn(word, done.stderr)
+        self.assertNotIn(b"\x1b", done.stderr)
+
+    def test_a_key_of_many_parts(self):
+        file = self.dir / "deep.toml"
+        file.write_text("a." * 300_000 + "b = 1")
+        self.refused(2, b"nested deeper than 32", "--config", file, "--check-config", program=REGRASPD)
+        self.refused(2, b"nested deeper than 32", "param", "load", file)
+        shutil.copy(SOURCE / "models/objects/sphere.urdf", self.dir / "deep.urdf")
+        self.refused(1, b"nested deeper than 32", "object", "show", self.dir / "deep.urdf")
+
+    def test_names_that_are_none(self):
+        hand = (SOURCE / "models/hands/allegro.urdf").read_bytes()
+        for name, cause in ((b"p\xe9lm", b"is not UTF-8"), (b"p&#27;[2Jlm", b"holds a control character")):
+            file = self.dir / "hand.urdf"
+            file.write_bytes(hand.replace(b'"palm"', b'"' + name + b'"'))
+            self.refused(1, cause, "hand", "check", file)
+            self.refused(1, cause, "--json", "hand", "check", file)
+            self.refused(1, cause, "object", "show", file)
+
+    def test_a_run_that_is_no_text(self):
+        run = self.dir / "run.mcap"
+        run.write_bytes(MAGIC + channel(1, b"run") + message(1, b'{"a": \xe9\x1b[31m'))
+        for words in (["replay", run], ["export", run, "--format", "csv", "-o", self.dir / "out"], ["video", run, "-o", self.dir / "v.mp4"]):
+            for json_flag in ([], ["--json"]):
+                self.refused(74, b"not JSON", *json_flag, *words)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@
 #include "core/files/draft.h"
 #include "core/files/names.h"
 #include "core/files/read_file.h"
+#include "core/files/toml_text.h"
 
 namespace regrasp {
 namespace {
@@ -65,6 +66,25 @@ TEST(Names, AreShownWithoutWhatATerminalObeys) {
   EXPECT_EQ(Shown(std::string(100, 'x')), std::string(64, 'x') + "...");
   EXPECT_EQ(ShownText("µ = 0.5\x1b[2J \xe2\x80\xae\xff\n"),
             "µ = 0.5\\x1b[2J \\xe2\\x80\\xae\\xff\\x0a");
+}
+
+TEST(Toml, IsRefusedWhereAParserWouldRecurseTooDeep) {
+  const std::string deep(33, '['), dots = "a" + std::string(33, '.') + "b";
+  std::string key = "a";
+  for (int i = 0; i < 33; ++i) key += " . \"b.c\"";
+  for (const std::string& text :
+       {"a = " + deep, key + " = 1", "[" + key + "]", "a = {" + key + " = 1}", "a = '\\' " + deep,
+        "a = [\"\"\"\n\"\"\", " + deep, "a = '''\n'''' " + deep, "a = \"\\\"\" " + deep,
+        "# " + dots + "\n" + key, "a = \"\n" + deep})
+    EXPECT_EQ(TomlFault(text), "nested deeper than 32") << text;
+  for (const std::string& text :
+       {"a = \"" + deep + dots + "\"", "a = '" + deep + dots + "' # " + deep,
+        "a = '''\n\"" + deep + dots + "''''", "a = \"\"\"\n\\\"\"\"\\\"" + deep + "\"\"\"",
+        "# " + dots, std::string("a = [1.5, 2.5,\n 3.5]\n[b.c]\nd = 1.5\n")})
+    EXPECT_EQ(TomlFault(text), "") << text;
+  EXPECT_EQ(TomlFault(std::string("a\0", 2)), "the file holds a zero byte");
+  EXPECT_EQ(ReadTomlText("/dev/null"), "");
+  EXPECT_THROW(ReadTomlText("/dev/zero"), std::runtime_error);
 }
 
 TEST_F(Files, AppearWholeOrNotAtAll) {

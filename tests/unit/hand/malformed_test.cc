@@ -211,6 +211,13 @@ TEST_F(MalformedTest, Scenarios) {
   }
   Write("hands/mini.toml", "object = " + std::string(5000, '['));
   ExpectAll({"mini.toml", "nested deeper than 32"});
+  std::string key;
+  for (int i = 0; i < 300000; ++i) key += "a.";
+  for (const std::string& text : {key + "b = 1", "[" + key + "b]", "c = {" + key + "b = 1}",
+                                  "c = [\"\"\"\n\"\"\", {" + key + "b = 1}]"}) {
+    Write("hands/mini.toml", text);
+    ExpectAll({"mini.toml", "nested deeper than 32"});
+  }
   Write("hands/mini.toml", std::string("object = \"ball\"\0", 16) + kScenarioToml);
   ExpectAll({"mini.toml", "zero byte"});
 }
@@ -257,6 +264,34 @@ TEST_F(MalformedTest, ElementsAndAttributesAreCounted) {
   Write("hands/mini.urdf",
         "<!-- " + std::string(500, '=') + " it's \"quoted\" -->" + std::string(kHandUrdf));
   EXPECT_NO_THROW(Load());
+}
+
+TEST_F(MalformedTest, NamesThatAreNone) {
+  const struct {
+    const char *name, *why, *shown;
+  } cases[] = {{"t&#27;[2Jp", "control character", "\"t[2Jp\""},
+               {"t\xe9p", "not UTF-8", "\"t\\xe9p\""},
+               {"t\xe2\x80\xaep", "changes the direction", "\"t\\xe2\\x80\\xaep\""}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.why);
+    EditHand("<link name=\"upper\">", "<link name=\"" + std::string(c.name) + "\">");
+    ExpectAll({"mini.urdf:3", c.why, c.shown});
+    EditHand("<robot name=\"mini\">", "<robot name=\"" + std::string(c.name) + "\">");
+    ExpectAll({"mini.urdf:1", c.why, c.shown});
+  }
+  Write("hands/mini.urdf", kHandUrdf);
+  EditScenario("name = \"only\"", "name = \"on\\u001b[2Jly\"");
+  ExpectAll({"mini.toml", "on\\x1b[2Jly", "control character"});
+}
+
+// What a file holds and a message quotes.
+TEST_F(MalformedTest, MessagesMoveNoCursor) {
+  EditScenario("armature_kg_m2", "\"a\\u001b[2J\"");
+  ExpectAll({"mini.toml:3", "a\\x1b[2J"});
+  Write("hands/mini.toml", kScenarioToml);
+  EditHand("<robot name=\"mini\">", "<robot name=\"mini\"><a\xe9>");
+  ExpectAll({"mini.urdf", "a\\xe9"});
+  EXPECT_EQ((ModelWarning{"f", 2, "", "x\x1b"}.Line()), "f:2: x\\x1b");
 }
 
 TEST_F(MalformedTest, DeepFilesAreRefusedWithoutRecursion) {

@@ -14,24 +14,33 @@
 namespace regrasp {
 namespace {
 
+/// A binary STL file of the L, in millimetres. `attributes`: the count of each triangle, and
+/// whether as many bytes follow it.
+std::string BinaryEll(std::string head = "", std::uint16_t attributes = 0, bool follow = false) {
+  head.resize(80, ' ');
+  const auto count = static_cast<std::uint32_t>(Ell().size());
+  head.append(reinterpret_cast<const char*>(&count), 4);
+  for (const Corners& corners : Ell()) {
+    head.append(12, '\0');
+    for (const Vector3d& p : corners) {
+      const Eigen::Vector3f single = p.cast<float>();
+      head.append(reinterpret_cast<const char*>(single.data()), 12);
+    }
+    head.append(reinterpret_cast<const char*>(&attributes), 2);
+    if (follow) head.append(attributes, '\x7f');
+  }
+  return head;
+}
+
 TEST_F(WildTest, StlInMillimetresOfEitherKind) {
   std::string text = "solid ell\n";
-  std::string binary(80, ' ');
-  const auto count = static_cast<std::uint32_t>(Ell().size());
-  binary.append(reinterpret_cast<const char*>(&count), 4);
   for (const Corners& corners : Ell()) {
     text += "facet normal 0 0 0\nouter loop\n";
-    binary.append(12, '\0');
-    for (const Vector3d& p : corners) {
-      text += fmt::format("vertex {} {} {}\n", p.x(), p.y(), p.z());
-      const Eigen::Vector3f single = p.cast<float>();
-      binary.append(reinterpret_cast<const char*>(single.data()), 12);
-    }
+    for (const Vector3d& p : corners) text += fmt::format("vertex {} {} {}\n", p.x(), p.y(), p.z());
     text += "endloop\nendfacet\n";
-    binary.append(2, '\0');
   }
   Write("objects/text.stl", text + "endsolid ell\n");
-  Write("objects/BINARY.STL", binary);
+  Write("objects/BINARY.STL", BinaryEll());
   for (const char* file : {"text.stl", "BINARY.STL"}) {
     SCOPED_TRACE(file);
     const std::string mesh = fmt::format("<mesh filename=\"{}\"", file);
@@ -41,6 +50,41 @@ TEST_F(WildTest, StlInMillimetresOfEitherKind) {
         << refusal;
     ExpectEll(Load(mesh + kMillimetres));
   }
+}
+
+// As exporters of robots write them: a header in words, bytes after the last triangle, colours in
+// the attribute counts, attributes.
+TEST_F(WildTest, BinaryStlWithMoreThanItsTriangles) {
+  const struct {
+    std::string bytes;
+    std::size_t unread;
+  } cases[] = {{BinaryEll("solid ell"), 0},
+               {BinaryEll() + "\n", 1},
+               {BinaryEll("solid ell") + std::string(500, '\0'), 500},
+               {BinaryEll("COLOR=", 0x7fff), 0},
+               {BinaryEll("", 3, true), 3 * Ell().size()}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.bytes.substr(0, 10) + std::to_string(c.unread));
+    Write("objects/more.stl", c.bytes);
+    ExpectEll(Load(std::string("<mesh filename=\"more.stl\"") + kMillimetres));
+    const TriangleMesh mesh = LoadMesh(root_ / "objects/more.stl", Vector3d::Ones());
+    EXPECT_EQ(mesh.unread_bytes, c.unread);
+    ModelReport report;
+    LoadOptions options;
+    options.inertia_from_shape = true;
+    (void)LoadObject((root_ / "objects/thing.urdf").string(), {}, options, &report);
+    ASSERT_EQ(report.warnings.size(), c.unread > 0 ? 1u : 0u);
+    if (c.unread == 0) continue;
+    const std::string told =
+        fmt::format("more.stl: {} bytes beside its triangles are not read", c.unread);
+    EXPECT_NE(report.warnings[0].Line().find(told), std::string::npos) << report.warnings[0].Line();
+  }
+  std::string many(84, '\0');
+  many[82] = 0x10;  // 2^20 triangles
+  Write("objects/many.stl", many + std::string(50u << 20, '\0'));
+  EXPECT_NE(Refusal("<mesh filename=\"many.stl\"/>")
+                .find("1048576 triangles; allowed are at most 333333"),
+            std::string::npos);
 }
 
 TEST_F(WildTest, ObjWithGroupsAndMaterialsThatAreNotThere) {

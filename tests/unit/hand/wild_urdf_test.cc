@@ -61,6 +61,20 @@ TEST_F(WildTest, OfTwoInertialsTheFirstCountsAndTheOtherIsTold) {
   ExpectRefused({"mini.urdf:9", "link \"tip\"", "\"0,5\"", "finite number"});
 }
 
+TEST_F(WildTest, AMomentAboveThatOfALinksSizeIsTold) {
+  const auto told = [](const LoadedScenario& loaded) {
+    return std::ranges::any_of(loaded.report.warnings, [](const ModelWarning& warning) {
+      return warning.Line().find(
+                 "mini.urdf:9: link \"tip\": <inertia> has the moment 0.0002 kg m²; "
+                 "a body of its size has at most m R² = ") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(told(LoaderTest::Load()));
+  EditHand("<inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\"",
+           "<inertia ixx=\"2e-4\" ixy=\"0\" ixz=\"0\" iyy=\"2e-4\"");
+  EXPECT_TRUE(told(LoaderTest::Load()));
+}
+
 // Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
 TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
   EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"-0.29 0.001 0.17\"/>");
