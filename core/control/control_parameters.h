@@ -65,11 +65,6 @@ struct ControlParameters {
   double feel_memory_s = 2.0;   ///< the mean is over about so much of the last sliding
   double feel_enough_s = 0.14;  ///< ... which is known after so much
   double feel_least = 0.1;      ///< coefficient counted on, at least
-  // Pushes, felt as what the object gives way (felt_push.h).
-  double push_filter_s = 0.2;  ///< low pass of the object's course
-  double push_least = 0.0004;  ///< what noise and regrasps do [m]
-  double push_full = 0.0009;   ///< from here on a push counts in full [m]
-  double push_memory_s = 3.0;  ///< it is forgotten in so long
   // Grasping.
   double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]
   double close_force = 0.15;        ///< a finger that has touched waits with this force [N]

@@ -71,12 +71,8 @@ struct GaitParameters {
       0.80;  ///< below it contacts are sought that allow more without the opposing finger [N]
   double max_shift = 0.006;       ///< ... so far from the present ones [m]
   double skip_distance = 0.0012;  ///< a finger this near to its target stays [m]
-  double rough_least = 0.5;       ///< plan: friction counted on up to which no more is asked for
-  double rough_full = 0.75;       ///< ... and from which on all of rough_margin
-  double rough_margin = 0.6;      ///< plan: more of both margins on a rough object [N]
   // Leaving and coming back.
   double grip_force = 2.0;     ///< preferred normal force of a holding finger, in `move` too [N]
-  double push_grip = 1.0;      ///< plan: more of it where a rough object is pushed [N]
   double transfer_s = 0.03;    ///< load transfer before a finger leaves, and after it is back [s]
   double hop_force = 0.05;     ///< its force when it leaves [N]
   double lift_height = 0.003;  ///< along the outward normal [m]

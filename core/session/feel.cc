@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "core/session/session_impl.h"
 
 namespace regrasp {
@@ -32,26 +30,12 @@ void Session::Impl::FeelFriction() {
            control.friction_estimate);
 }
 
-void Session::Impl::FeelPush() {
-  if (HoldsAlone(state, world.stand_in()))
-    felt_push.Update(estimator.estimate().p_WO, motion.v_W, parameters.control, dt);
-  else
-    felt_push.Reset();
-}
-
 void Session::Impl::CountOn() {
   control = parameters.control;
-  gait = parameters.gait;
   felt.Use(parameters.shape);
-  if (!gait.plan) return;
-  if (gait.friction_share > 0)
-    control.friction_estimate = felt_friction.Counted(gait.friction_share, parameters.control);
-  // A rough object allows margins that a slippery one does not, and to be held harder.
-  const double range = std::max(1e-6, gait.rough_full - gait.rough_least);
-  const double rough = std::clamp((control.friction_estimate - gait.rough_least) / range, 0.0, 1.0);
-  gait.margin_min += rough * gait.rough_margin;
-  gait.margin_wanted += rough * gait.rough_margin;
-  gait.grip_force += rough * felt_push.Level(parameters.control) * gait.push_grip;
+  if (parameters.gait.plan && parameters.gait.friction_share > 0)
+    control.friction_estimate =
+        felt_friction.Counted(parameters.gait.friction_share, parameters.control);
 }
 
 }  // namespace regrasp

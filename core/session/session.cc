@@ -64,7 +64,7 @@ ActivityContext Session::Impl::Context() {
                         parameters.gravity_W,
                         control,
                         parameters.exploration,
-                        gait,
+                        parameters.gait,
                         dt};
   return {now, tick, seed, parameters, start, controller, tasks, world, judge, log, job};
 }
@@ -115,7 +115,6 @@ void Session::Impl::Tick() {
   times.sense_s = clock.Lap();
 
   Feel(reading);
-  FeelPush();
   CountOn();
   monitor.Update(Context().now);
   WatchContacts();

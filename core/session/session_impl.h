@@ -7,7 +7,6 @@
 #include <array>
 
 #include "core/control/felt_friction.h"
-#include "core/control/felt_push.h"
 #include "core/sensing/sensors.h"
 #include "core/session/activity/all.h"
 #include "core/session/quality_monitor.h"
@@ -51,7 +50,6 @@ struct Session::Impl {
   // feel.cc: the object's surface, from what the controller believes
   void Feel(const SensorReading& reading);
   void FeelFriction();
-  void FeelPush();
   /// What this tick goes by: parameters.control, with the friction that was felt where landings are
   /// planned, and parameters.shape.
   void CountOn();
@@ -77,7 +75,6 @@ struct Session::Impl {
     v("estimator", estimator);
     v("felt", felt);
     v("felt_friction", felt_friction);
-    v("felt_push", felt_push);
     v("judge", judge);
     v("monitor", monitor);
     v("controller", controller);
@@ -109,7 +106,6 @@ struct Session::Impl {
   StateEstimator estimator;  // what the controller believes
   FeltSurface felt;
   FeltFriction felt_friction;
-  FeltPush felt_push;
   Judge judge;
   QualityMonitor monitor;
   HybridController controller;
@@ -123,7 +119,6 @@ struct Session::Impl {
 
   // Not part of the state.
   ControlParameters control;  // what the controller counts on in this tick
-  GaitParameters gait;        // ... and asks for
   JointVector torque;
   EventLog log;
   FixedVector<JobRecord, kMaxPending> finished, finished_out;
