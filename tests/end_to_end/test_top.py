@@ -77,7 +77,7 @@ class Sizes(Top):
 
 
 class Control(Top):
-    ARGUMENTS = ["--speed", "4", "--seed", "1"]
+    ARGUMENTS = ["--speed", "1", "--seed", "1"]
 
     def test_keys(self):
         session = self.top(40, 120)
