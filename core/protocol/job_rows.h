@@ -115,8 +115,8 @@ inline constexpr std::array kJobRows = {
                "job; its record: finger, criterion, estimator, seed, converged, reason (gradient, "
                "max_cycles, contact_lost, dropped, cancelled, object_moved; null until it has "
                "ended), cycles, phi_initial, phi_final, phi_true_initial, phi_true_final "
-               "(noise-free, from the simulator, for judging only; all null before the first "
-               "cycle), path_length_m"},
+               "(noise-free, from the simulator, for judging only; null until they are "
+               "known), path_length_m"},
 };
 
 }  // namespace regrasp::rows

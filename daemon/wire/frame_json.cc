@@ -259,10 +259,10 @@ Json JobJson(const JobRecord& job, const HandModel& hand, double dt) {
                {"ended_s", seconds(job.end_tick)}};
   ResultWriter writer{json, hand};
   const_cast<JobRecord&>(job).ResultFields(writer);  // only reads
-  // A refused exploration has seen no φ.
+  // The record counts the cycles when they have ended; what it has not seen by then is 0.
   if (job.method == JobMethod::kExplore && job.explore.cycles == 0)
     for (const char* phi : {"phi_initial", "phi_final", "phi_true_initial", "phi_true_final"})
-      json[phi] = nullptr;
+      if (ended || json[phi] == 0) json[phi] = nullptr;
   json["finished"] = ended;
   return json;
 }

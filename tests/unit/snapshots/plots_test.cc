@@ -317,8 +317,20 @@ TEST_F(Snapshots, NumbersThatAreNotFiniteLeaveGapsAndNothingElse) {
 }
 
 TEST_F(Snapshots, AHistoryOfOneFrameCanBeDrawn) {
+  const auto explores = [](const Frame& frame) { return frame.exploration.active; };
+  const auto one = std::ranges::find_if(run_, explores);
+  ASSERT_NE(one, run_.end());
   for (const PlotRow& plot : kPlotTable)
-    EXPECT_NO_THROW(Draw(plot, std::span(run_).last(1), {}, File(plot.name, ".png"))) << plot.name;
+    EXPECT_NO_THROW(Draw(plot, {one, 1}, {}, File(plot.name, ".png"))) << plot.name;
+  // Where no finger explores there is nothing to compare; all else can be drawn.
+  ASSERT_FALSE(run_.back().exploration.active);
+  for (const PlotRow& plot : kPlotTable) {
+    const auto draw = [&] { Draw(plot, std::span(run_).last(1), {}, File(plot.name, ".png")); };
+    if (plot.name == "comparison")
+      EXPECT_THROW(draw(), std::runtime_error);
+    else
+      EXPECT_NO_THROW(draw()) << plot.name;
+  }
 }
 
 TEST_F(Snapshots, QualityShowsTheExploringFingerBold) {
