@@ -5,11 +5,15 @@ Every object is homogeneous, 80 g, its centroid the origin, its surface closed. 
     radial   |p| = r(d) over the directions d of an icosphere or of a cube's grid
     loft     a cross-section r(angle), scaled by a profile (z, scale), with poles
     rounded  a box whose edges are rounded with radius r
+make_zoo.py --random N --seed S -o DIR writes N bodies of random kind, proportions and orientation instead, which nobody
+has tuned on: zoo --objects "$(ls DIR/*.urdf | paste -sd,)" turns them.
 Standard library only. Lengths in mm here, metres in the files.
 """
+import argparse
 import itertools
 import math
 import os
+import random
 
 from solid import det, icosahedron, moments
 
@@ -255,10 +259,59 @@ def write(folder, name, mesh):
     print("%-22s %-14s mm  %4d triangles  %5.1f cm3" % (name, size, len(mesh.triangles), 1e6 * volume))
 
 
+def turned(mesh, q):
+    """By the quaternion q = (w, x, y, z), of any length."""
+    w, x, y, z = (c / math.sqrt(sum(d * d for d in q)) for c in q)
+    rows = ((1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)))
+    mesh.points = [[sum(r * c for r, c in zip(row, p)) for row in rows] for p in mesh.points]
+    return mesh
+
+
+def random_body(draw):
+    """A body 30 to 68 mm wide along every axis and its kind; half of them turned, half of these about z only."""
+    u = draw.uniform
+    kinds = {
+        "ellipsoid": lambda: ellipsoid(u(18, 31), u(18, 31), u(16, 31)),
+        "superquadric": lambda: superquadric(u(20, 27), u(20, 27), u(18, 27), u(0.2, 1.5)),
+        "rounded": lambda: rounded(u(16, 26), u(16, 26), u(16, 27), u(3, 9)),
+        "cylinder": lambda: cylinder(u(17, 26), u(18, 29)),
+        "prism": lambda: prism(draw.choice([3, 4, 5, 6]), u(17, 22), u(20, 27), u(5, 16)),
+        "peanut": lambda: (lambda r: peanut(r, r * u(0.7, 0.9), u(26, 33)))(u(19, 24)),
+        "pear": lambda: pear(u(22, 26), u(14, 19), u(25, 31)),
+        "lens": lambda: lens(u(25, 30), u(14, 20)),
+        "pillow": lambda: pillow(u(22, 27), u(16, 22)),
+        "bumpy": lambda: bumpy(u(22, 26), u(1, 3), u(0, 2), draw.choice([2, 3, 4, 5])),
+        "knobbly": lambda: knobbly(u(22, 26), u(1, 3)),
+    }
+    while True:
+        kind = draw.choice(list(kinds))
+        mesh = kinds[kind]()
+        if draw.random() < 0.5:
+            about_z = draw.random() < 0.5
+            q = [draw.gauss(0, 1) for _ in range(4)]
+            mesh = turned(mesh, (q[0], 0, 0, q[3]) if about_z else q)
+        widths = [max(p[c] for p in mesh.points) - min(p[c] for p in mesh.points) for c in range(3)]
+        if 30 <= min(widths) and max(widths) <= 68:
+            return kind, mesh
+
+
 def main():
-    folder = os.path.dirname(os.path.abspath(__file__))
-    for name, make in ZOO.items():
-        write(folder, name, make())
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--random", type=int, metavar="N", help="N random bodies instead of the zoo")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("-o", metavar="DIR", default=os.path.dirname(os.path.abspath(__file__)))
+    given = parser.parse_args()
+    if given.random is None:
+        bodies = ((name, make()) for name, make in ZOO.items())
+    else:
+        draw = random.Random(given.seed)
+        drawn = (random_body(draw) for _ in range(given.random))
+        bodies = (("%s_%d" % (kind, i), mesh) for i, (kind, mesh) in enumerate(drawn))
+    os.makedirs(given.o, exist_ok=True)
+    for name, mesh in bodies:
+        write(given.o, name, mesh)
 
 
 if __name__ == "__main__":
