@@ -140,6 +140,7 @@ struct Frame {
   Vector3d v_WO = Vector3d::Zero(), w_WO = Vector3d::Zero();
   Vector3d p_WO_reference = Vector3d::Zero();  ///< where control wants the object
   double mass_kg = 0, friction = 0;
+  double friction_counted = 0;  ///< what the controller counts on: felt, or its estimate
   Vector3d gravity_W = Vector3d::Zero();
   struct Contact {
     int link, finger;

@@ -78,6 +78,7 @@ void Session::Impl::Snapshot(Frame* frame) {
   f.p_WO_reference = controller.wrench().p_ref();
   f.mass_kg = world.mass_kg();
   f.friction = world.friction();
+  f.friction_counted = control.friction_estimate;
   f.gravity_W = world.gravity_W();
   f.stability = monitor.stability();
   f.contacts.clear();

@@ -126,7 +126,7 @@ std::string MarginText(const Incident& incident) {
 
 std::string FrictionText(const Incident& incident) {
   const double friction = incident.frames.back()->friction;
-  const double counted_on = incident.parameters.control.friction_estimate;
+  const double counted_on = incident.frames.back()->friction_counted;
   if (friction >= counted_on) return "";
   return fmt::format(" Friction was {:.2g}, where control counts on {:.2g}.", friction, counted_on);
 }

@@ -104,7 +104,7 @@ Json IncidentJson(const Incident& incident, const HandModel& hand) {
           {"limits",
            {{"drop_distance_m", incident.parameters.control.drop_distance},
             {"load_margin_n", incident.parameters.gait.margin_min},
-            {"friction_estimate", incident.parameters.control.friction_estimate}}},
+            {"friction_estimate", last ? Json(last->friction_counted) : Json()}}},
           {"findings", FindingsJson(incident, hand)},
           {"job", incident.job.id != 0 ? JobJson(incident.job, hand, incident.dt) : Json()},
           {"events", std::move(events)},

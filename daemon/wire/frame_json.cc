@@ -58,12 +58,11 @@ std::string_view ActiveCriterion(const Frame& frame) {
 }
 
 /// The sensed contacts that hold the object, about its sensed centre.
-std::vector<GraspContact> HoldingContacts(const Frame& frame, const Parameters& parameters) {
+std::vector<GraspContact> HoldingContacts(const Frame& frame) {
   std::vector<GraspContact> contacts;
   for (const FingerFrame& f : frame.fingers)
     if (f.role != FingerRole::kFree && f.in_contact)
-      contacts.push_back(
-          {f.p_WC - frame.p_WO_sensed, -f.normal_W, parameters.control.friction_estimate});
+      contacts.push_back({f.p_WC - frame.p_WO_sensed, -f.normal_W, frame.friction_counted});
   return contacts;
 }
 
@@ -111,7 +110,7 @@ Json ContactsJson(const Frame& frame, const HandModel& hand, const Parameters& p
             {"q_WO_wxyz", Wxyz(frame.q_WO_sensed)},
             {"p_WO_reference_m", Vector(frame.p_WO_reference)}}},
           {"normals", "outward"},
-          {"friction", parameters.control.friction_estimate},
+          {"friction", frame.friction_counted},
           {"weight_n", Vector(parameters.control.mass_estimate * parameters.gravity_W)},
           {"max_force_n", parameters.control.max_normal_force},
           {"fingers", std::move(fingers)}};
@@ -137,7 +136,7 @@ Json JointsJson(const Frame& frame, const HandModel& hand) {
 
 Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters,
                  bool on_request) {
-  const std::vector<GraspContact> holding = HoldingContacts(frame, parameters);
+  const std::vector<GraspContact> holding = HoldingContacts(frame);
   const StabilityFrame& s = frame.stability;
   Json fingers = Json::object();
   for (std::size_t i = 0; i < frame.fingers.size(); ++i) {

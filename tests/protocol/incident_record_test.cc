@@ -124,9 +124,12 @@ TEST_F(IncidentRecord, TheLoadMarginCountsUntilTheFirstContactIsLost) {
 
 TEST_F(IncidentRecord, FrictionBelowWhatControlCountsOnIsSaid) {
   EXPECT_FALSE(Says(Make(), "counts on"));
-  for (Frame& frame : frames) frame.friction = 0.2;
+  for (Frame& frame : frames) {
+    frame.friction = 0.2;
+    frame.friction_counted = 0.37;  // as it was felt
+  }
   source.frames.clear();
-  EXPECT_TRUE(Says(Make(), "Friction was 0.2, where control counts on 0.5"));
+  EXPECT_TRUE(Says(Make(), "Friction was 0.2, where control counts on 0.37"));
 }
 
 TEST_F(IncidentRecord, NamesWhatDiffersFromTheDefaults) {
