@@ -59,13 +59,24 @@ std::vector<char*> Environment(Surroundings surroundings) {
   ::dup2(null_fd, STDIN_FILENO);
   ::dup2(log_fd, STDOUT_FILENO);
   ::dup2(log_fd, STDERR_FILENO);
+  // Before they are let through: a handler of this program would swallow what waits to end it.
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(number, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::signal(SIGINT, SIG_DFL);
-  ::signal(SIGTERM, SIG_DFL);
   ::execve(argv[0], argv, variables);
   ::_exit(127);
+}
+
+/// Ends a daemon that is of no use, in a second or by force; has ended when this returns.
+void End(pid_t pid) {
+  ::kill(pid, SIGTERM);
+  for (int i = 0; i < 100; ++i) {
+    if (::waitpid(pid, nullptr, WNOHANG) != 0) return;
+    ::usleep(10'000);  // not WaitFor: this may be because of an interrupt
+  }
+  ::kill(pid, SIGKILL);
+  ::waitpid(pid, nullptr, 0);
 }
 
 }  // namespace
@@ -144,7 +155,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
       WaitFor(-1, 0, Deadline(0.01));
     }
   } catch (const CliError& failure) {
-    if (failure.code == kTimeout || failure.code == kInterrupted) ::kill(started.pid, SIGTERM);
+    if (failure.code == kTimeout || failure.code == kInterrupted) End(started.pid);
     throw;
   }
   return started;

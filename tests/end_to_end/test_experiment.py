@@ -1,13 +1,16 @@
 """`regrasp experiment`: results that do not depend on who computes them, in which order, or in how many goes."""
 
+import contextlib
 import csv
 import json
 import math
+import pathlib
 import re
 import shlex
 import shutil
 import signal
 import subprocess
+import time
 import unittest
 
 from harness import HANG_S, REGRASP, SOURCE, Case, Terminal, environment
@@ -322,6 +325,26 @@ class Paper(ExperimentCase):
             process.send_signal(signal.SIGINT)
             _, stderr = process.communicate(timeout=HANG_S)
         self.assertEqual(process.returncode, 130, stderr)
+
+    def test_interrupted_while_daemons_start_it_leaves_none(self):
+        (self.dir / "models").symlink_to(SOURCE / "models")  # by which its daemons are known
+        words = [REGRASP, "experiment", *self.SMALL_PAPER[:-1], self.dir / "models", "-o", self.dir / "cut"]
+        for wait_s in (0, 0.002, 0.01, 0.05):
+            with subprocess.Popen(list(map(str, words)), env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+                process.stderr.readline()
+                time.sleep(wait_s)
+                process.send_signal(signal.SIGINT)
+                process.communicate(timeout=HANG_S)
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(self.daemons(), [], wait_s)
+
+    def daemons(self):
+        found = []
+        for command in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            with contextlib.suppress(OSError):
+                if str(self.dir).encode() in command.read_bytes():
+                    found.append(command.read_text().split("\0"))
+        return found
 
     def test_one_command_writes_the_page(self):
         self.run_experiment(*self.SMALL_PAPER, "--only-paper", "-o", self.dir)
