@@ -45,6 +45,15 @@ class Lockstep(DaemonCase):
         self.expect(0, "up", "--speed", "max", "--seed", "1", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
         self.assertEqual(self.typed(), first)
 
+    def test_evaluate_takes_contacts_with_the_friction_that_was_felt(self):
+        self.expect(0, "grasp", "--wait")
+        self.expect(0, "explore", "ring", "--wait")
+        contacts = self.json("contacts")
+        self.assertGreater(contacts["friction"], 0.6)  # control.friction_estimate is 0.5
+        (self.dir / "contacts.json").write_text(json.dumps(contacts))
+        margin, sensed = (self.json(*words)["load_margin_n"] for words in (["evaluate", self.dir / "contacts.json"], ["quality"]))
+        self.assertAlmostEqual(margin / sensed, 1, delta=0.05)  # `quality` has it low-passed
+
     def test_readme_prints_these_figures(self):
         """Elsewhere the same words with other figures: a compiler or a mathematical library may round otherwise."""
         page = (SOURCE / "README.md").read_text()
