@@ -96,18 +96,19 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
     return {p_WC,
             p_WO + q_WO * landing.p_OF,
             q_WO * landing.normal_O,
-            p_WC,
+            std::nullopt,
             p_WO,
             along_.speed() * sign_ * request_.axis_W};
   }
   const StanceContact home = HomeOf(finger, parameters);
-  Vector3d recall = Vector3d::Zero();
+  std::optional<Vector3d> recall;
   if (parameters.mode == GaitMode::kExploring) {
     const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
     recall = Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
   }
   const Vector3d& centre = wrench.p_ref();
-  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, centre + recall, centre, {}};
+  if (recall) *recall += centre;
+  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, recall, centre, {}};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,

@@ -61,9 +61,9 @@ struct GaitParameters {
   double lag_position = 0.002;  ///< the reference waits while the object is this far behind [m]
   double lag_rotation = 0.12;   ///< ... or so much [rad]
   // Meanwhile, while a finger regrasps (turn_along.h).
-  double along_speed = 0.35;       ///< highest speed of the object; 0: it rests [rad/s]
-  double along_explore_speed = 0;  ///< the same while the finger explores [rad/s]
-  double along_ahead_s = 0.5;      ///< no faster than the others can follow for so long [s]
+  double along_speed = 0.35;         ///< highest speed of the object; 0: it rests [rad/s]
+  double along_explore_speed = 0.1;  ///< the same while the finger explores [rad/s]
+  double along_ahead_s = 0.5;        ///< no faster than the others can follow for so long [s]
   double along_margin = 1.3;  ///< load margin of those that hold from which on it goes at full [N]
   // When a finger may leave.
   double margin_min = 0.25;  ///< rho_min: least load margin of the grasp without it [N]
@@ -100,7 +100,7 @@ struct GaitParameters {
   double explore_gain = 0.02;     ///< ... or from this gain of its last explorations on
   double disc_radius =
       0.004;               ///< contacts stay within this distance of the first one, in the palm [m]
-  double explore_s = 0.5;  ///< longest exploration per regrasp [s]
+  double explore_s = 0.3;  ///< longest exploration per regrasp [s]
   double explore_settle_s = 0.08;  ///< rest before it, until the filters follow
   double return_limit_s = 0.6;     ///< longest way to its last end, and to the best contact
   Estimator estimator = Estimator::kLeastSquares;  ///< of its gradient

@@ -54,7 +54,9 @@ class Regrasp {
     Vector3d p_WC = Vector3d::Zero();       ///< contact [m]
     Vector3d p_WF = Vector3d::Zero();       ///< fingertip centre [m]
     Vector3d normal_W = Vector3d::UnitZ();  ///< outward
-    Vector3d p_WR = Vector3d::Zero();       ///< explore: the last explorations' end [m]
+    /// Explore: slides here first, where the last explorations ended [m]; not where the landing is
+    /// planned.
+    std::optional<Vector3d> p_WR;
     Vector3d p_WO = Vector3d::Zero();  ///< the object's centre, about which a hop is an arc [m]
     Vector3d w_W = Vector3d::Zero();   ///< of the object, with which the target turns [rad/s]
   };

@@ -20,6 +20,7 @@ constexpr auto kPaperGait = std::to_array<PaperValue>({
     {"gait.max_excursion", 0.016},
     {"gait.along_speed", 0},
     {"gait.explore", static_cast<double>(GaitExplore::kAlways)},
+    {"gait.explore_s", 0.5},
 });
 
 }  // namespace

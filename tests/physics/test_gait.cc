@@ -111,6 +111,50 @@ TEST(Rotate, TurnsOnWhileFingersRegrasp) {
   EXPECT_LT(goes_on.sim_time_s, 0.8 * rests.sim_time_s);
 }
 
+// With planned landings Algorithm 1 begins where the finger lands, and the object turns meanwhile.
+// By the paper's gait the finger first slides to where it ended before, and the object rests.
+TEST(Rotate, ExploresFromWhereItLandsWhileTheObjectTurnsOn) {
+  struct Seen {
+    int explorations = 0, recalls = 0;
+    double turned = 0;  // while a finger explored [rad]
+  };
+  const auto turn = [](bool paper) {
+    SessionConfig config = Config(1);
+    config.parameters.gait.mode = GaitMode::kExploring;
+    config.parameters.gait.explore = GaitExplore::kAlways;
+    config.parameters.gait.plan = !paper;
+    Session session(std::move(config));
+    Grasp(session);
+    session.Apply(Turn(90, -Vector3d::UnitZ()));
+    Seen seen;
+    std::string phase;
+    double before = 0;
+    Frame frame;
+    for (int tick = 0; tick < 40000 && session.TakeFinishedJobs().empty(); ++tick) {
+      session.Tick();
+      session.Snapshot(&frame, false);
+      for (const Event& event : session.TakeEvents())
+        if (event.kind == EventKind::kGaitPhase) {
+          phase = event.text;  // "ring: explore"
+          phase.erase(0, phase.find(": ") == std::string::npos ? 0 : phase.find(": ") + 2);
+          seen.explorations += phase == "explore";
+          seen.recalls += phase == "recall";
+        }
+      const double turned = std::abs(frame.gait.reference_angle_rad);
+      if (phase == "explore") seen.turned += turned - before;
+      before = turned;
+    }
+    return seen;
+  };
+  const Seen planned = turn(false), paper = turn(true);
+  EXPECT_GT(planned.explorations, 3);
+  EXPECT_EQ(planned.recalls, 0);
+  EXPECT_GT(planned.turned, 5 * kDegree);
+  EXPECT_GT(paper.explorations, 3);
+  EXPECT_GT(paper.recalls, 0);
+  EXPECT_EQ(paper.turned, 0);
+}
+
 // About this axis the fingertips move along the row of the fingers: the one at its limit must leave
 // first (without that rule seed 301 loses the object about +y), and each stands where its neighbour
 // would land (without waiting for that, seed 320 gives up about -y).
