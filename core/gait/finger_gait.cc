@@ -295,7 +295,7 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
     FingerTask& task = (*tasks)[i];
     task.mode = FingerMode::kHold;
     task.cap = tick.control.max_normal_force;
-    task.grip = tick.gait.grip_force;
+    task.grip = Grip(tick);
   }
   ObjectWrench& wrench = controller->wrench();
   const bool busy = phase_ == GaitPhase::kObjectMotion || phase_ == GaitPhase::kRegrasp ||

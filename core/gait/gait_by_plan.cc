@@ -80,6 +80,11 @@ double FingerGait::MarginNeeded(const ControlTick& tick, int finger) const {
          std::max(tick.gait.margin_least, tick.gait.margin_min * std::exp2(-idle_cycles_));
 }
 
+double FingerGait::Grip(const ControlTick& tick) const {
+  const bool pinch = planned(tick) && finger() >= 0 && order_.back().finger == finger();
+  return pinch ? std::max(tick.gait.grip_force, tick.gait.opposing_grip) : tick.gait.grip_force;
+}
+
 bool FingerGait::MayLeave(const ControlTick& tick, int finger) const {
   return tick.margins.without[finger] >= MarginNeeded(tick, finger);
 }

@@ -155,6 +155,40 @@ TEST(Rotate, ExploresFromWhereItLandsWhileTheObjectTurnsOn) {
   EXPECT_EQ(paper.turned, 0);
 }
 
+// While the opposing finger is away, and only then, the others hold tighter.
+TEST(Rotate, HoldsTighterWhileTheOpposingFingerIsAway) {
+  struct Grip {
+    double with = 0, without = 0;  // mean normal force of the middle finger [N]
+  };
+  const auto turn = [](double grip) {
+    SessionConfig config = Config(1);
+    config.parameters.gait.opposing_grip = grip;
+    const auto finger = [&](std::string_view name) {
+      int i = 0;
+      while (config.model.hand.fingers[i].name != name) ++i;
+      return i;
+    };
+    const int thumb = finger("thumb"), middle = finger("middle");
+    Session session(std::move(config));
+    Grasp(session);
+    session.Apply(Turn(180, -Vector3d::UnitZ()));
+    std::array<double, 2> sum{}, ticks{};
+    Frame frame;
+    for (int tick = 0; tick < 40000 && session.TakeFinishedJobs().empty(); ++tick) {
+      session.Tick();
+      session.Snapshot(&frame, false);
+      if (frame.gait.finger == middle) continue;
+      const auto away = static_cast<std::size_t>(frame.gait.finger == thumb);
+      sum[away] += frame.fingers[middle].force;
+      ++ticks[away];
+    }
+    return Grip{sum[0] / ticks[0], sum[1] / ticks[1]};
+  };
+  const Grip same = turn(2), more = turn(4);
+  EXPECT_GT(more.without, 1.2 * same.without);
+  EXPECT_LT(more.with, 1.2 * same.with);
+}
+
 // About this axis the fingertips move along the row of the fingers: the one at its limit must leave
 // first (without that rule seed 301 loses the object about +y), and each stands where its neighbour
 // would land (without waiting for that, seed 320 gives up about -y).
