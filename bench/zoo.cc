@@ -1,7 +1,7 @@
 // Turns many objects, by several settings, on the same seeds, straight on the session (no daemon):
-//   zoo [--hand NAME|FILE] [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T] [--axis
-//   X,Y,Z] [--tilt DEG]
-//       [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N] [--rows] [--events]
+//   zoo [--hand NAME|FILE] [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T]
+//       [--axis X,Y,Z] [--tilt DEG] [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N]
+//       [--rows] [--events]
 //       [--setting 'NAME: PARAMETER=VALUE ...'] ...
 // `zoo` (the default): every object of models/objects whose name begins with zoo_, and the cubes.
 // A trial is completed when its job is done and the object has truly turned by the angle asked for,
