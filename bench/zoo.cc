@@ -1,6 +1,7 @@
 // Turns many objects, by several settings, on the same seeds, straight on the session (no daemon):
-//   zoo [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T] [--axis X,Y,Z] [--tilt DEG]
-//       [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N] [--rows] [--events]
+//   zoo [--hand NAME|FILE] [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T]
+//       [--axis X,Y,Z] [--tilt DEG] [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N]
+//       [--rows] [--events]
 //       [--setting 'NAME: PARAMETER=VALUE ...'] ...
 // `zoo` (the default): every object of models/objects whose name begins with zoo_, and the cubes.
 // A trial is completed when its job is done and the object has truly turned by the angle asked for,
@@ -45,7 +46,7 @@ struct Options {
   std::uint64_t first = 1;
   double turns = 1, tilt = -1, push = 0, limit_s = 600;
   Vector3d axis = -Vector3d::UnitZ();
-  std::string noise = "paper";
+  std::string hand = "shadow", noise = "paper";
   bool rows = false, events = false;
 };
 
@@ -70,7 +71,7 @@ Setting ParseSetting(const std::string& text) {
 SessionConfig MakeConfig(const Options& o, const std::string& object, const Setting& setting,
                          std::uint64_t seed) {
   SessionConfig config;
-  config.model = LoadScenario("shadow", object, ModelSearchPath());
+  config.model = LoadScenario(o.hand, object, ModelSearchPath());
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
@@ -253,7 +254,9 @@ Options Parse(int argc, char** argv) {
     }
     if (++i >= argc) throw std::invalid_argument("zoo: " + a + " is no option or needs a value");
     const std::string value = argv[i];
-    if (a == "--objects")
+    if (a == "--hand")
+      o.hand = value;
+    else if (a == "--objects")
       objects = value;
     else if (a == "--seeds")
       o.seeds = std::stoi(value);

@@ -157,12 +157,32 @@ std::vector<std::string> Warnings(const Loaded& loaded, int own_contacts) {
       warnings.push_back(fmt::format(
           "finger {} has {} driven joint{}: it can hold, but a tip needs 3 to slide where it shall",
           finger.name, finger.joints.size(), finger.joints.size() == 1 ? "" : "s"));
+  if (const std::string shared = SharedMotors(loaded.model.hand); !shared.empty())
+    warnings.push_back(shared);
   const std::string_view few = FewFingers(loaded.model.hand.num_fingers());
   if (!few.empty()) warnings.emplace_back(few);
   return warnings;
 }
 
 }  // namespace
+
+std::string SharedMotors(const HandModel& hand) {
+  int own = 0;
+  for (const Finger& finger : hand.fingers) {
+    const auto alone = [&](int j) {
+      return std::ranges::count_if(hand.fingers, [&](const Finger& other) {
+               return std::ranges::count(other.joints, j) > 0;
+             }) == 1;
+    };
+    own += std::ranges::any_of(finger.joints, alone);
+  }
+  const int needed = std::min(3, hand.num_fingers());
+  if (own >= needed) return "";
+  return fmt::format(
+      "{} of {} fingers {} a motor of {} own: those that follow one motor cannot each be put on an "
+      "object; {} are needed",
+      own, hand.num_fingers(), own == 1 ? "has" : "have", own == 1 ? "its" : "their", needed);
+}
 
 std::string_view FewFingers(int fingers) {
   if (fingers < 3)

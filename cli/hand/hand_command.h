@@ -56,6 +56,10 @@ Answer NewHand(const Options& options);
 /// What a hand of so few fingers cannot do; "" from four on.
 std::string_view FewFingers(int fingers);
 
+/// Why a hand whose fingers follow common motors, by a synergy say, will find no grasp; "" of
+/// others.
+std::string SharedMotors(const HandModel& hand);
+
 /// Draws the hand in its preshape.
 void DrawHand(const LoadedScenario& model, const std::string& file);
 

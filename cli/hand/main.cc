@@ -41,6 +41,16 @@ void TellFailure(const Options& options, const std::string& cause, const std::st
     fmt::print(stderr, "regrasp: {}\n  try: {}\n", cause, next);
 }
 
+/// What may help against what a file is refused for: the flags that the refusal names.
+std::string NextFor(const std::string& cause) {
+  if (cause.ends_with("file not found")) return "give the path of a .urdf or .toml file";
+  std::string flags;
+  for (const char* flag : {" --fill-missing-meshes", " --inertia-from-shape"})
+    if (cause.find(flag) != std::string::npos) flags += flag;
+  return flags.empty() ? "mend the file, then check again"
+                       : fmt::format("mend the file, or the same with{}", flags);
+}
+
 int Main(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
@@ -76,9 +86,7 @@ int Main(int argc, char** argv) {
   } catch (const ModelError& error) {
     const std::string cause = error.what();
     const bool missing = cause.ends_with("file not found");
-    TellFailure(
-        options, cause,
-        missing ? "give the path of a .urdf or .toml file" : "mend the file, then check again");
+    TellFailure(options, cause, NextFor(cause));
     return static_cast<int>(missing ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& error) {
     TellFailure(options, error.what(), "regrasp help hand " + options.verb);

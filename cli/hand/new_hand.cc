@@ -151,13 +151,18 @@ class Maker {
                                                       : " or ",
                            sizes_mm_[k]);
     const bool ball = object_.empty();
+    const std::string shared = SharedMotors(all_);
     throw Failure(
         ExitCode::kFailed,
-        fmt::format("{}: no posture found in which {} fingertips touch a ball of {} mm{}",
+        fmt::format("{}: no posture found in which {} fingertips touch a ball of {} mm{}{}",
                     options_.file, std::min(hand_.num_fingers(), 3), balls,
-                    ball ? "" : ", which stands for " + object_),
-        fmt::format("regrasp hand new FILE -o NAME.toml {}--object-size MM, larger or smaller",
-                    ball ? "" : "--object " + object_ + " "));
+                    ball ? "" : ", which stands for " + object_,
+                    shared.empty() ? "" : "; " + shared),
+        !shared.empty()
+            ? "regrasp hand check FILE tells which joints follow which"
+            : fmt::format(
+                  "regrasp hand new FILE -o NAME.toml {}--object-size MM, larger or smaller",
+                  ball ? "" : "--object " + object_ + " "));
   }
 
   void ReadObject() {

@@ -16,9 +16,11 @@ class FeltFriction {
   void Update(const HandModel& hand, const Estimate& estimate, const FingerTasks& tasks,
               const JointVector& torque, const Vector3d& gravity_W,
               const ControlParameters& parameters, double dt);
-  /// Fingers have slid for long enough.
+  /// Fingers have slid for long enough, and what they felt can be: strong damping and a finger that
+  /// something is in the way of make a mean of less than the least that is counted on, even less
+  /// than 0, with which none could leave any more.
   bool known(const ControlParameters& parameters) const {
-    return felt_s_ >= parameters.feel_enough_s;
+    return felt_s_ >= parameters.feel_enough_s && mean_ >= parameters.feel_least;
   }
   double felt() const { return mean_; }      ///< mean of f_v / f_n; 0: nothing has slid
   double felt_s() const { return felt_s_; }  ///< time over which it was felt [s]

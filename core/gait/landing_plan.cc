@@ -37,19 +37,19 @@ Eigen::Vector2d RingOffset(int index) {
 
 /// Between a link and the felt surface, at most gait.link_clearance; negative where they overlap
 /// [m]. `q_OW`: of the object, for the place where it is sensed.
-double GapToObject(const Bone& bone, const ControlTick& tick, const Quaterniond& q_OW) {
+double GapToObject(const Bones& bones, const ControlTick& tick, const Quaterniond& q_OW) {
   const FeltSurface& felt = tick.felt;
   double gap = tick.gait.link_clearance;
-  if (bone.radius <= 0) return gap;
-  for (const double share : {0.0, 0.5, 1.0}) {
-    const Vector3d r = bone.a_W + share * (bone.b_W - bone.a_W) - tick.estimate.p_WO;
-    const double distance = r.norm();
-    if (distance > kNearObject * felt.mean_radius() + bone.radius || distance < 1e-6) continue;
-    const SurfacePoint surface = felt.At(q_OW * r);
-    const double slope =
-        std::max(tick.gait.least_slope, surface.normal_O.dot(surface.p_O) / surface.p_O.norm());
-    gap = std::min(gap, (distance - surface.p_O.norm()) * slope - bone.radius);
-  }
+  for (const Bone& bone : bones)
+    for (const double share : {0.0, 0.5, 1.0}) {
+      const Vector3d r = bone.a_W + share * (bone.b_W - bone.a_W) - tick.estimate.p_WO;
+      const double distance = r.norm();
+      if (distance > kNearObject * felt.mean_radius() + bone.radius || distance < 1e-6) continue;
+      const SurfacePoint surface = felt.At(q_OW * r);
+      const double slope =
+          std::max(tick.gait.least_slope, surface.normal_O.dot(surface.p_O) / surface.p_O.norm());
+      gap = std::min(gap, (distance - surface.p_O.norm()) * slope - bone.radius);
+    }
   return gap;
 }
 
@@ -74,6 +74,21 @@ double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& the
 /// The coming turn, as far as the finger follows [rad, rotation vector in W].
 Vector3d TurnAhead(const ControlTick& tick, const LandingPlan::Request& request, double reserve) {
   return std::min(reserve, tick.gait.step_rad) * request.axis_W;
+}
+
+/// Between the last two links of two fingers [m].
+double GapOfFingers(const FingerPosture& one, const FingerPosture& two) {
+  const auto all = [](const FingerPosture& finger) {
+    FixedVector<Bone, 5> bones;
+    bones.push_back(finger.tip);
+    for (const Bones* some : {&finger.middle, &finger.body})
+      for (const Bone& bone : *some) bones.push_back(bone);
+    return bones;
+  };
+  double gap = 1;
+  for (const Bone& a : all(one))
+    for (const Bone& b : all(two)) gap = std::min(gap, Gap(a, b));
+  return gap;
 }
 
 double Share(double value, double wanted) {
@@ -139,8 +154,7 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   double gap = clearance;
   for (int i : tick.grasp.without(finger)) {
     const FingerPosture other = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
-    for (const Bone* own : {&there.tip, &there.middle})
-      for (const Bone* its : {&other.tip, &other.middle}) gap = std::min(gap, Gap(*own, *its));
+    gap = std::min(gap, GapOfFingers(there, other));
   }
   if (gap < clearance) score -= penalty * std::min(5.0, (clearance - gap) / 0.002);
   landing->blocked = gap < -tick.gait.landing_overlap;

@@ -1,6 +1,7 @@
 #include "core/hand/finger_reach.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/hand/damped_inverse.h"
 
@@ -10,11 +11,18 @@ namespace {
 constexpr double kClose = 2e-4;        // the tip is there [m]
 constexpr double kLongestStep = 0.35;  // per joint and step [rad]
 
-Bone BoneOf(const Link& link, const Isometry3d& X_WL) {
-  for (const Shape& shape : link.shapes)
-    if (shape.kind == Shape::Kind::kCapsule)
-      return {X_WL * shape.a_L, X_WL * shape.b_L, shape.radius};
-  return {};
+double Volume(const Shape& shape) {
+  if (shape.kind == Shape::Kind::kBox) return 8 * shape.half_extents.prod();
+  const double length = (shape.b_L - shape.a_L).norm();
+  return M_PI * shape.radius * shape.radius * (length + 4.0 / 3.0 * shape.radius);
+}
+
+/// Of the largest shape from the `first` on; none where there is none.
+Bones LargestOf(const Link& link, std::size_t first, const Isometry3d& X_WL) {
+  const Shape* largest = nullptr;
+  for (std::size_t s = first; s < link.shapes.size(); ++s)
+    if (largest == nullptr || Volume(link.shapes[s]) > Volume(*largest)) largest = &link.shapes[s];
+  return largest == nullptr ? Bones() : BonesOf(*largest, X_WL);
 }
 
 /// J⁺ x.
@@ -52,6 +60,28 @@ FingerVector Stepped(const HandModel& hand, int finger, const FingerPosture& pos
 
 }  // namespace
 
+Bones BonesOf(const Shape& shape, const Isometry3d& X_WL) {
+  constexpr double kFlat = 5e-4;  // [m]
+  Bones bones;
+  if (shape.kind == Shape::Kind::kCapsule) {
+    bones.push_back({X_WL * shape.a_L, X_WL * shape.b_L, shape.radius});
+    return bones;
+  }
+  Eigen::Index along = 0, thin = 0;
+  shape.half_extents.maxCoeff(&along);
+  const double radius = shape.half_extents.minCoeff(&thin);
+  if (along == thin) along = (thin + 1) % 3;  // a cube
+  const Eigen::Index across = 3 - along - thin;
+  const Isometry3d X_WB = X_WL * shape.X_LB;
+  const Vector3d half = (shape.half_extents[along] - radius) * X_WB.linear().col(along);
+  const double off = shape.half_extents[across] - radius;
+  const Vector3d side = (off > kFlat ? off : 0.0) * X_WB.linear().col(across);
+  const Vector3d& p = X_WB.translation();
+  bones.push_back({p + side - half, p + side + half, radius});
+  if (off > kFlat) bones.push_back({p - side - half, p - side + half, radius});
+  return bones;
+}
+
 JointChain ChainOf(const HandModel& hand, int finger) {
   JointChain chain;
   for (int j = hand.links[hand.fingers[finger].tip_link].parent_joint; j >= 0;
@@ -79,7 +109,7 @@ FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q
     const auto column = static_cast<Eigen::Index>(
         std::find(model.joints.begin(), model.joints.end(), driven) - model.joints.begin());
     if (n > 0 && n + 1 == chain.size())
-      posture.middle = BoneOf(hand.links[joint.parent_link], X_WL);
+      posture.middle = LargestOf(hand.links[joint.parent_link], 0, X_WL);
     X_WL = X_WL * joint.X_PJ;
     axes.push_back({X_WL.linear() * joint.axis_J, X_WL.translation(), joint.ratio, column});
     const double angle = joint.driver < 0 ? q[column] : joint.ratio * q[column] + joint.offset;
@@ -87,7 +117,9 @@ FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q
   }
   posture.p_WF = X_WL * model.p_LF;
   posture.along_W = (posture.p_WF - X_WL.translation()).normalized();
-  posture.tip = BoneOf(hand.links[model.tip_link], X_WL);
+  const Link& last = hand.links[model.tip_link];
+  if (!last.shapes.empty()) posture.tip = BonesOf(last.shapes.front(), X_WL)[0];
+  posture.body = LargestOf(last, 1, X_WL);
   posture.J = FingerJacobian::Zero(3, static_cast<Eigen::Index>(model.joints.size()));
   for (const Axis& axis : axes)
     posture.J.col(axis.column) += axis.ratio * axis.axis_W.cross(posture.p_WF - axis.p_WJ);

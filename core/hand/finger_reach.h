@@ -15,13 +15,19 @@ struct Bone {
   double radius = 0;
 };
 
+/// A shape: a capsule as it is, a box as one along its longest side, or where it is flat as two
+/// that meet its narrow sides.
+using Bones = FixedVector<Bone, 2>;
+Bones BonesOf(const Shape& shape, const Isometry3d& X_WL);
+
 /// One finger at some joint angles.
 struct FingerPosture {
   FingerVector q;                        ///< root to tip [rad]
   Vector3d p_WF = Vector3d::Zero();      ///< fingertip centre [m]
   Vector3d along_W = Vector3d::UnitZ();  ///< of the tip link, towards the tip
-  Bone tip, middle;                      ///< the last two links; radius 0 for one without a capsule
-  FingerJacobian J;                      ///< of the fingertip centre
+  Bone tip;                              ///< of the fingertip
+  Bones body, middle;  ///< the largest other shape of its link, and that of the link before
+  FingerJacobian J;    ///< of the fingertip centre
 };
 
 /// All joints between palm and tip link, coupled ones too, root to tip.

@@ -1,3 +1,5 @@
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -125,7 +127,9 @@ class HandReader {
         finger.joints.push_back(driver);  // of the URDF until NumberJoints()
     }
     if (finger.joints.empty() || finger.joints.size() > std::size_t{kMaxFingerJoints}) {
-      problems_.Add(0, "finger \"{}\": {} revolute joints between root and \"{}\"; allowed 1 .. {}",
+      problems_.Add(0,
+                    "finger \"{}\": {} revolute joints between root and \"{}\", coupled ones not "
+                    "counted; allowed 1 .. {}",
                     layout.name, finger.joints.size(), layout.tip_link, kMaxFingerJoints);
       problems_.ThrowIfAny();
     }
@@ -146,30 +150,64 @@ class HandReader {
   void CheckCounts() {
     if (hand_.joints.empty()) problems_.Add(0, "the hand has no revolute joint");
     if (hand_.joints.size() > std::size_t{kMaxJoints})
-      problems_.Add(0, "more than {} revolute joints", kMaxJoints);
+      problems_.Add(0,
+                    "{} joints, coupled ones too: more than {} revolute joints that are not locked",
+                    hand_.joints.size(), kMaxJoints);
+  }
+
+  /// The moment that a link with shapes has in all axes [kg m²]; 0 of others.
+  double MomentInAllAxes(const Link& link) const {
+    const std::optional<UrdfInertial>& body = LinkAt(file_.FindLink(link.name)).inertial;
+    if (!body || link.shapes.empty()) return 0;
+    const double moment = body->inertia(0, 0);
+    return body->inertia == moment * Matrix3d::Identity() ? moment : 0;
+  }
+
+  /// Such moments that several links have: written for want of better ones.
+  std::set<double> Placeholders() const {
+    constexpr int kSeveral = 3;
+    std::map<double, int> links;
+    for (std::size_t l = 1; l < hand_.links.size(); ++l) ++links[MomentInAllAxes(hand_.links[l])];
+    std::set<double> placeholders;
+    for (const auto& [moment, count] : links)
+      if (moment > 0 && count >= kSeveral) placeholders.insert(moment);
+    return placeholders;
   }
 
   void CheckBodies() {
+    const std::set<double> placeholders = Placeholders();
+    std::map<double, std::vector<std::string>> guessed;  // links, by their placeholder
     for (std::size_t l = 1; l < hand_.links.size(); ++l) {
       Link& link = hand_.links[l];
       const int line = line_of_link_[l];
       const bool told = LinkAt(file_.FindLink(link.name)).inertial.has_value();
-      const std::string why = WhyNoBody(link, told);
       const std::string element = LinkElement(link.name);
-      if (why.empty()) {
-        if (const std::string doubt = WhyUnlikely(link); !doubt.empty())
-          problems_.Warn(line, element, doubt);
-        continue;
-      }
-      if (!options_.inertia_from_shape) {
+      std::string why = WhyNoBody(link, told);
+      const bool impossible = !why.empty();
+      if (!impossible) why = WhyUnlikely(link);
+      const double moment = MomentInAllAxes(link);
+      const bool guess = why.empty() && placeholders.contains(moment);
+      if (guess)
+        why = fmt::format("<inertia> is {:g} kg m² in all axes, as of other links", moment);
+      if (why.empty()) continue;
+      if (options_.inertia_from_shape) {
+        InventBody(&link);
+        problems_.Warn(
+            line, element,
+            fmt::format("{}; {:.3g} g with the inertia of its shape taken", why, 1e3 * link.mass));
+      } else if (impossible) {
         problems_.Add(line, "{}: {}; --inertia-from-shape computes what is missing", element, why);
-        continue;
+      } else if (guess) {
+        guessed[moment].push_back(link.name);
+      } else {
+        problems_.Warn(line, element, why + "; --inertia-from-shape computes it");
       }
-      InventBody(&link);
-      problems_.Warn(
-          line, element,
-          fmt::format("{}; {:.3g} g with the inertia of its shape taken", why, 1e3 * link.mass));
     }
+    for (const auto& [moment, links] : guessed)
+      problems_.Warn(0, "",
+                     fmt::format("<inertia> is {:g} kg m² in all axes of several links ({}): a "
+                                 "placeholder; --inertia-from-shape computes it",
+                                 moment, fmt::join(links, ", ")));
   }
 
   void FindFingertip(std::size_t f) {

@@ -76,8 +76,8 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
         shape.half_extents = geometry.size / 2;
         break;
       case UrdfGeometry::Kind::kMesh:
-        shape = OfMesh(in, geometry, X, fingertip);
-        break;
+        if (const auto fitted = OfMesh(in, geometry, X, fingertip)) shapes.push_back(*fitted);
+        continue;
     }
     shapes.push_back(shape);
   }
@@ -137,14 +137,12 @@ const TriangleMesh* HandShapes::Mesh(const fs::path& file, const Vector3d& scale
   return &meshes_.emplace(key, LoadMesh(file, scale)).first->second;
 }
 
-Shape HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
-                         bool fingertip) {
+std::optional<Shape> HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry,
+                                        const Isometry3d& X, bool fingertip) {
   const fs::path file = Find(in, geometry);
-  Shape shape;
-  shape.radius = 1e-3;
   if (file.empty()) {
-    if (!options_.fill_missing_meshes) return shape;
-    shape = Filled(in, geometry);
+    if (!options_.fill_missing_meshes) return {};
+    Shape shape = Filled(in, geometry);
     // Along the link's own frame, not where the mesh would have been.
     Pose(X * in.collisions.front().X_LG.inverse(), &shape);
     return shape;
@@ -169,7 +167,7 @@ Shape HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const
     return Fitted(in, geometry, posed, file.string(), fingertip);
   } catch (const ModelError& error) {
     problems_->Add(geometry.line, "{}: {}", LinkElement(in.name), error.what());
-    return shape;
+    return {};
   }
 }
 

@@ -4,6 +4,7 @@
 /// the hand's loader.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,9 @@ class HandShapes {
   std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip);
 
  private:
-  Shape OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
-               bool fingertip);
+  /// Nothing where the file cannot be read, which is a problem.
+  std::optional<Shape> OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
+                              bool fingertip);
   Shape Fitted(const UrdfLink& in, const UrdfGeometry& geometry, const TriangleMesh& posed,
                const std::string& name, bool fingertip);
   /// The file named, or with fill_missing_meshes one of its name in a directory beside it; empty

@@ -48,7 +48,10 @@ class Guess {
       problems_.Add(0,
                     "{} chains end in a link with a <collision>: the fingers; a hand has 2 .. {}{}",
                     chains_.size(), kMaxFingers,
-                    bare.empty() ? "" : fmt::format("; without one: {}", fmt::join(bare, ", ")));
+                    bare.empty() ? ""
+                                 : fmt::format("; without one: {} (a <visual> is not read: copy it "
+                                               "into a <collision>)",
+                                               fmt::join(bare, ", ")));
     problems_.ThrowIfAny();
   }
 

@@ -129,6 +129,25 @@ class Hand(Case):
         self.assertIn("no posture found in which 3 fingertips touch a ball of 50 mm", error)
         self.assertFalse((self.dir / "far.toml").exists())
 
+    def test_fingers_that_follow_one_motor_are_told(self):
+        text = re.sub(r'(<joint name="arm[2-4]_(\w+)".*?velocity="5"/>)', r'\1<mimic joint="arm1_\2"/>', hand(4), flags=re.DOTALL)
+        self.assertEqual(text.count("<mimic"), 9)
+        cause = "0 of 4 fingers have a motor of their own"
+        self.assertIn(cause, "\n".join(self.check(self.write("one.urdf", text))["warnings"]))
+        self.assertNotIn("motor", "\n".join(self.check(self.write("four.urdf", hand(4)))["warnings"]))
+        # Where they cannot touch the ball, that is why.
+        far = re.sub(r'(<child link="arm[34]a"/><origin xyz=)"[^"]*"', r'\1"0 -0.5 0"', text)
+        error = self.refused(1, "-q", "hand", "new", self.write("far.urdf", far), "-o", self.dir / "far.toml")
+        self.assertIn("no posture found", error)
+        self.assertIn(cause, error)
+
+    def test_the_hint_repeats_the_flags_that_help(self):
+        text = hand(3).replace('<cylinder radius="0.008" length="0.03"/>', '<mesh filename="gone.stl"/>')
+        error = self.refused(1, "hand", "check", self.write("gone.urdf", text))
+        self.assertEqual(error.count("file not found"), 3)
+        self.assertTrue(error.endswith("  try: mend the file, or the same with --fill-missing-meshes\n"), error)
+        self.check(self.dir / "gone.urdf", "--fill-missing-meshes")
+
     def test_what_two_or_three_fingers_cannot_do_is_said_before_it_is_tried(self):
         for n in (3, 2):
             with self.subTest(fingers=n):

@@ -77,6 +77,20 @@ TEST(FeltFriction, CountsOnWhatItWasToldUntilFingersHaveSlidForLongEnough) {
   EXPECT_EQ(friction.Counted(0.85, ControlParameters()), ControlParameters().friction_estimate);
 }
 
+// As of a finger that another one holds back: no friction is negative.
+TEST(FeltFriction, AMeanThatCannotBeIsNotBelievedUntilMoreIsFelt) {
+  FeltFriction friction;
+  Scene scene(0.01, -0.12);
+  scene.Run(0.3, &friction);
+  ASSERT_LT(friction.felt(), 0);
+  EXPECT_FALSE(friction.known(ControlParameters()));
+  EXPECT_EQ(friction.Counted(0.85, ControlParameters()), ControlParameters().friction_estimate);
+  scene.Push(0.18);
+  scene.Run(1.0, &friction);
+  EXPECT_TRUE(friction.known(ControlParameters()));
+  EXPECT_NEAR(friction.felt(), 0.6 - 0.2 * 1.0 / 1.2, 0.02);
+}
+
 TEST(FeltFriction, AFingerThatRestsOrHardlyTouchesTellsNothing) {
   FeltFriction friction;
   Scene(0.0, 0.18).Run(1.0, &friction);

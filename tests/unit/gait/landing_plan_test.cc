@@ -188,6 +188,41 @@ TEST_F(LandingPlanTest, TellsThatAnotherFingerStandsInTheWay) {
   EXPECT_TRUE(plan.landing().blocked);
 }
 
+// As published hands have them: boxes, and beside the fingertip another shape of the same link.
+TEST_F(LandingPlanTest, BoxesAreInTheWayAsCapsulesAre) {
+  const int ring = hand.FindFinger("ring"), middle = hand.FindFinger("middle");
+  const auto blocked = [&] {
+    LandingPlan::Request request = Home(middle);
+    request.reach = 0.002;
+    request.home = Home(ring).home;
+    estimate.fingers[middle].ticks_without_contact = 100;
+    LandingPlan plan;
+    plan.Start(request);
+    Plan(&plan);
+    return plan.landing().blocked;
+  };
+  ASSERT_TRUE(blocked());
+  // Nothing of the ring finger but its tip's end: the middle finger lands where its links were.
+  Link& last = model.hand.links[hand.fingers[ring].tip_link];
+  Link& before = model.hand.links[hand.joints[last.parent_joint].parent_link];
+  const Shape tip = last.shapes.front(), link = before.shapes.front();
+  const auto box = [](const Shape& capsule) {
+    Shape box;
+    box.kind = Shape::Kind::kBox;
+    box.X_LB.linear() = RotationFromZ((capsule.b_L - capsule.a_L).normalized());
+    box.X_LB.translation() = 0.5 * (capsule.a_L + capsule.b_L);
+    box.half_extents = {capsule.radius, capsule.radius,
+                        0.5 * (capsule.b_L - capsule.a_L).norm() + capsule.radius};
+    return box;
+  };
+  last.shapes.front().radius = 0;
+  before.shapes.clear();
+  ASSERT_FALSE(blocked());
+  last.shapes.push_back(box(tip));
+  before.shapes.push_back(box(link));
+  EXPECT_TRUE(blocked());
+}
+
 // Least height of the finger's middle link above the felt surface, once its tip has landed [m].
 double HeightOfMiddleLink(const ControlTick& tick, int finger, const Landing& landing) {
   const Vector3d& p_WO = tick.estimate.p_WO;
@@ -198,7 +233,7 @@ double HeightOfMiddleLink(const ControlTick& tick, int finger, const Landing& la
       ReachFor(tick.hand, finger, now, p_WO + q_WO * landing.p_OF, 0.05, 20);
   double height = 1;
   for (double share = 0; share <= 1; share += 0.125) {
-    const Bone& bone = there.middle;
+    const Bone& bone = there.middle[0];
     const Vector3d r = q_WO.conjugate() * (bone.a_W + share * (bone.b_W - bone.a_W) - p_WO);
     height = std::min(height, r.norm() - tick.felt.At(r).p_O.norm() - bone.radius);
   }
@@ -215,9 +250,9 @@ TEST_F(LandingPlanTest, KeepsTheLinkBeforeTheTipOffTheObject) {
   const FingerPosture now = PostureAt(hand, first, AnglesOf(hand, first, estimate.q));
   const FingerPosture there =
       ReachFor(hand, first, now, estimate.p_WO + estimate.q_WO * free.p_OF, 0.05, 20);
-  const Vector3d r =
-      estimate.q_WO.conjugate() * (0.5 * (there.middle.a_W + there.middle.b_W) - estimate.p_WO);
-  const double bump = r.norm() - there.middle.radius + 0.002;
+  const Vector3d r = estimate.q_WO.conjugate() *
+                     (0.5 * (there.middle[0].a_W + there.middle[0].b_W) - estimate.p_WO);
+  const double bump = r.norm() - there.middle[0].radius + 0.002;
   ASSERT_GT(bump, kRadius);
   felt.Reset();
   for (int i = 0; i < FeltSurface::kCells; ++i) {

@@ -106,5 +106,25 @@ TEST(MotionReserve, IsTheWayToTheLimitOfAFingerOnTheAxis) {
   EXPECT_LT(ReserveAt(hand, 0, Vector3d::UnitY(), 2), 0.15);
 }
 
+TEST(BonesOf, MeetTheNarrowSidesOfABox) {
+  Shape box;
+  box.kind = Shape::Kind::kBox;
+  box.half_extents = {0.02, 0.01, 0.006};
+  const Bones flat = BonesOf(box, Isometry3d::Identity());
+  ASSERT_EQ(flat.size(), 2u);
+  for (const Bone& bone : flat) {
+    EXPECT_DOUBLE_EQ(bone.radius, 0.006);
+    EXPECT_NEAR(std::abs(bone.a_W.x()) + bone.radius, 0.02, 1e-12);
+    EXPECT_NEAR(std::abs(bone.a_W.y()) + bone.radius, 0.01, 1e-12);
+    EXPECT_NEAR(bone.a_W.z(), 0, 1e-12);
+  }
+  box.half_extents = {0.01, 0.01, 0.02};
+  const Bones square = BonesOf(box, Isometry3d::Identity());
+  ASSERT_EQ(square.size(), 1u);
+  EXPECT_NEAR((square[0].a_W - square[0].b_W).norm(), 0.02, 1e-12);
+  box.half_extents = Vector3d::Constant(0.01);
+  EXPECT_NEAR((BonesOf(box, Isometry3d::Identity())[0].a_W).norm(), 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace regrasp

@@ -66,13 +66,70 @@ TEST_F(WildTest, AMomentAboveThatOfALinksSizeIsTold) {
     return std::ranges::any_of(loaded.report.warnings, [](const ModelWarning& warning) {
       return warning.Line().find(
                  "mini.urdf:9: link \"tip\": <inertia> has the moment 0.0002 kg m²; "
-                 "a body of its size has at most m R² = ") != std::string::npos;
+                 "a body of its size has at most m R² = ") != std::string::npos &&
+             warning.text.ends_with("; --inertia-from-shape computes it");
     });
   };
   EXPECT_FALSE(told(LoaderTest::Load()));
   EditHand("<inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\"",
            "<inertia ixx=\"2e-4\" ixy=\"0\" ixz=\"0\" iyy=\"2e-4\"");
   EXPECT_TRUE(told(LoaderTest::Load()));
+  LoadOptions options;
+  options.inertia_from_shape = true;
+  const LoadedScenario computed = LoadScenario("mini", "", {root_}, options);
+  EXPECT_FALSE(told(computed));
+  EXPECT_LT(computed.hand.links[2].I_LCom(0, 0), 2e-5);
+}
+
+// A finger of links that all have what an exporter wrote for want of masses.
+TEST_F(WildTest, TheSameMomentInAllAxesOfSeveralLinksIsAPlaceholder) {
+  std::string links, joints, parent = "palm";
+  for (const char* name : {"a", "b", "tip"}) {
+    links += fmt::format(
+        R"(<link name="{}"><inertial><mass value="0.02"/><inertia ixx="1e-6" ixy="0" ixz="0" iyy="1e-6" iyz="0" izz="1e-6"/></inertial>
+<collision><origin xyz="0 0 0.02"/><geometry><cylinder radius="0.006" length="0.03"/></geometry></collision></link>)",
+        name);
+    joints += fmt::format(
+        R"(<joint name="to_{0}" type="revolute"><parent link="{1}"/><child link="{0}"/><origin xyz="0 0 0.04"/>
+<axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1"/><dynamics damping="0.1"/></joint>)",
+        name, parent);
+    parent = name;
+  }
+  Write("hands/three.urdf",
+        "<robot name=\"three\"><link name=\"palm\"/>" + links + joints + "</robot>");
+  HandLayout layout;
+  layout.fingers.push_back({"only", "tip"});
+  layout.armature = 1e-4;
+  const auto load = [&](bool from_shape, ModelReport* report) {
+    LoadOptions options;
+    options.inertia_from_shape = from_shape;
+    return LoadHand(root_ / "hands/three.urdf", layout, options, report);
+  };
+  ModelReport report;
+  EXPECT_DOUBLE_EQ(load(false, &report).links[1].I_LCom(0, 0), 1e-6);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_NE(report.warnings[0].text.find("<inertia> is 1e-06 kg m² in all axes of several links "
+                                         "(a, b, tip): a placeholder; --inertia-from-shape"),
+            std::string::npos)
+      << report.warnings[0].Line();
+  ModelReport computed;
+  const HandModel hand = load(true, &computed);
+  EXPECT_EQ(computed.warnings.size(), 3u);
+  EXPECT_GT(hand.links[1].I_LCom(0, 0), 2e-6);  // m (3 r² + l²) / 12 of the cylinder: 1.7e-6
+  EXPECT_DOUBLE_EQ(hand.links[1].mass, 0.02);
+}
+
+TEST_F(WildTest, AMeshThatIsNotThereIsTheOnlyMistakeOfItsLink) {
+  EditHand("<box size=\"0.01 0.01 0.04\"/>", "<mesh filename=\"gone.stl\"/>");
+  try {
+    LoaderTest::Load();
+    ADD_FAILURE() << "was not refused";
+  } catch (const ModelError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("\"gone.stl\": file not found"), std::string::npos) << text;
+    EXPECT_EQ(text.find("outside its shapes"), std::string::npos) << text;
+    EXPECT_EQ(text.find("errors"), std::string::npos) << text;
+  }
 }
 
 // Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
