@@ -61,7 +61,9 @@ Json SamplesJson(const Incident& incident, const HandModel& hand) {
         NameOrNull(hand, frame.exploration.active ? frame.exploration.finger : -1));
     samples["stability"].push_back(frame.stability.active);
     samples["load_margin_n"].push_back(frame.stability.load_margin);
-    samples["object_error_m"].push_back((frame.p_WO - frame.p_WO_reference).norm());
+    samples["object_error_m"].push_back(HoldsAlone(frame.state, frame.stand_in)
+                                            ? Json((frame.p_WO - frame.p_WO_reference).norm())
+                                            : Json());
     samples["friction"].push_back(frame.friction);
     for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
       const FingerFrame& f = frame.fingers[i];

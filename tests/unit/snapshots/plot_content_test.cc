@@ -114,6 +114,28 @@ TEST_F(Snapshots, IncidentShowsTheForceOfEveryFingerAndWhoLetGo) {
   EXPECT_GT(vermillion("i.png"), vermillion("n.png") + 100);
 }
 
+TEST_F(Snapshots, IncidentTellsWhereTheObjectIsOnlyWhileItIsHeldAndNamesItsLines) {
+  std::vector<Frame> run = run_;
+  for (Frame& frame : run) {
+    // Nobody has asked for a place while the hand closes: half a metre would set the axis.
+    frame.p_WO_reference = frame.p_WO;
+    if (frame.stand_in) frame.p_WO_reference.x() += 0.5;
+  }
+  const auto svg = [&](std::span<const Event> events) {
+    PlotIncident(run, events, NoteOf(run), hand_, {}, File("i.svg"));
+    return Bytes(File("i.svg"));
+  };
+  const auto says = [](const std::string& text, const char* words) {
+    return text.find(words) != std::string::npos;
+  };
+  EXPECT_FALSE(says(svg(events_), ">500<"));
+  EXPECT_TRUE(says(svg(events_), "event, see above"));
+  IncidentNote nobody = NoteOf(run);
+  nobody.ends.clear();
+  PlotIncident(run, {}, nobody, hand_, {}, File("n.svg"));
+  EXPECT_FALSE(says(Bytes(File("n.svg")), "event, see above"));
+}
+
 TEST_F(Snapshots, ComparisonShowsBothRunsAndTheThreshold) {
   std::vector<Frame> other = run_;
   for (Frame& frame : other) frame.fingers[kSyntheticExplorer].true_manipulability *= 0.8;
