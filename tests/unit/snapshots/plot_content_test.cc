@@ -139,8 +139,8 @@ TEST_F(Snapshots, IncidentTellsWhereTheObjectIsOnlyWhileItIsHeldAndNamesItsLines
 TEST_F(Snapshots, ComparisonShowsBothRunsAndTheThreshold) {
   std::vector<Frame> other = run_;
   for (Frame& frame : other) frame.fingers[kSyntheticExplorer].true_manipulability *= 0.8;
-  const std::array<LabelledRun, 2> runs = {LabelledRun{"manipulability", run_},
-                                           LabelledRun{"combined", other}};
+  const std::array<LabelledRun, 2> runs = {LabelledRun{"manipulability", run_, "", ""},
+                                           LabelledRun{"combined", other, "", ""}};
   PlotQualityComparison(runs, hand_, {}, File("c.png"));
   const cv::Mat picture = cv::imread(File("c.png"));
   const cv::Rect upper(152, 118, 1150, 370), lower(152, 530, 1150, 370);
@@ -149,6 +149,26 @@ TEST_F(Snapshots, ComparisonShowsBothRunsAndTheThreshold) {
               500);                              // solid, so at least about one pixel per column
   EXPECT_GT(Count(picture, kBlue, upper), 200);  // dotted
   EXPECT_GT(Count(picture, kGrey, lower), 300);  // dashed threshold
+}
+
+TEST_F(Snapshots, ComparisonSaysWhatIsCommonToTheRunsAndWhatIsNot) {
+  std::vector<Frame> other = run_;
+  for (Frame& frame : other) frame.seed = 8;
+  const auto svg = [&](const LabelledRun& second) {
+    const std::array<LabelledRun, 2> runs = {LabelledRun{"A", run_, "egg", ""}, second};
+    PlotOptions options;
+    options.object_name = "of the last run";
+    PlotQualityComparison(runs, hand_, options, File("c.svg"));
+    return Bytes(File("c.svg"));
+  };
+  const std::string seeds = svg({"B", other, "egg", "gait.speed 1 (2)"});
+  for (const char* text : {"noise paper · hand synthetic · object egg (80 g, µ 0.8) · simulated",
+                           "A: seed 7, default parameters", "B: seed 8, changed: gait.speed 1 (2)"})
+    EXPECT_NE(seeds.find(text), std::string::npos) << text;
+  const std::string objects = svg({"B", run_, "cube", ""});
+  EXPECT_NE(objects.find("seed 7 · noise paper · hand synthetic · simulated"), std::string::npos);
+  EXPECT_NE(objects.find("B: object cube"), std::string::npos);
+  EXPECT_EQ((seeds + objects).find("of the last run"), std::string::npos);
 }
 
 TEST_F(Snapshots, ContactsShowEveryFingerInItsColour) {

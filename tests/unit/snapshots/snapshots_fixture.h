@@ -70,7 +70,7 @@ inline PlotInput InputOf(std::span<const Frame> history, const PlotOptions& opti
   input.frames.assign(history.begin(), history.end());
   input.events = {{1000, EventKind::kContactMade, 0, 0, 0, "contact"},
                   {2500, EventKind::kPush, -1, 0, 0, "push"}};
-  input.explorations = {input.frames, input.frames};
+  input.explorations = {{input.frames, "", ""}, {input.frames, "", ""}};
   input.incident = NoteOf(history);
   input.felt = std::make_shared<FeltSurface>(FeltBall(0.0004));
   input.hand = SyntheticHand();
