@@ -2,8 +2,8 @@
 
 /// Pictures of a run, drawn with OpenCV (which appears in no header of this folder but canvas.h).
 ///
-/// Every function draws one picture into `path`; the suffix chooses the format (.png, .jpg, .jpeg,
-/// .pdf, .svg).
+/// Every function draws one picture into `path`; the suffix chooses the format
+/// (kPlotSuffixes).
 /// The input is what leaves a session, Frame and Event, oldest first and in one run: a picture
 /// never touches the simulator. All of them may be called from any thread; none keeps state.
 ///

@@ -16,7 +16,7 @@
 namespace regrasp::handlers {
 namespace {
 
-const std::initializer_list<std::string_view> kSuffixes = {".png", ".jpg", ".jpeg", ".pdf", ".svg"};
+const std::vector<std::string_view> kSuffixes(kPlotSuffixes.begin(), kPlotSuffixes.end());
 
 /// Everything the worker needs, so that it shares nothing with the I/O thread.
 struct Job {
