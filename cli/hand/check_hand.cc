@@ -109,10 +109,9 @@ Json FingersJson(const HandModel& hand) {
 std::string FingersText(const HandModel& hand) {
   std::string text;
   for (const Finger& finger : hand.fingers) {
-    text += fmt::format("\n  {}: tip of {} with radius {:.1f} mm, {} driven joint{}", finger.name,
+    text += fmt::format("\n  {}: tip of {} with radius {:.1f} mm, {}", finger.name,
                         hand.links[static_cast<std::size_t>(finger.tip_link)].name,
-                        1e3 * finger.tip_radius, finger.joints.size(),
-                        finger.joints.size() == 1 ? "" : "s");
+                        1e3 * finger.tip_radius, DrivenJoints(finger));
     for (const int j : finger.joints) text += "\n" + JointLine(hand, j);
   }
   if (hand.num_coupled > 0) text += "\n  coupled joints";
@@ -154,15 +153,20 @@ std::vector<std::string> Warnings(const Loaded& loaded, int own_contacts) {
                     loaded.scenario.empty() ? "rest" : "preshape", own_contacts));
   for (const Finger& finger : loaded.model.hand.fingers)
     if (finger.joints.size() < 3)
-      warnings.push_back(fmt::format(
-          "finger {} has {} driven joint{}: it can hold, but a tip needs 3 to slide where it shall",
-          finger.name, finger.joints.size(), finger.joints.size() == 1 ? "" : "s"));
+      warnings.push_back(
+          fmt::format("finger {} has {}: it can hold, but a tip needs 3 to slide where it shall",
+                      finger.name, DrivenJoints(finger)));
   const std::string_view few = FewFingers(loaded.model.hand.num_fingers());
   if (!few.empty()) warnings.emplace_back(few);
   return warnings;
 }
 
 }  // namespace
+
+std::string DrivenJoints(const Finger& finger) {
+  const std::size_t count = finger.joints.size();
+  return fmt::format("{} driven joint{}", count, count == 1 ? "" : "s");
+}
 
 std::string_view FewFingers(int fingers) {
   if (fingers < 3)

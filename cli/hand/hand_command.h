@@ -56,6 +56,9 @@ Answer NewHand(const Options& options);
 /// What a hand of so few fingers cannot do; "" from four on.
 std::string_view FewFingers(int fingers);
 
+/// "3 driven joints".
+std::string DrivenJoints(const Finger& finger);
+
 /// Draws the hand in its preshape.
 void DrawHand(const LoadedScenario& model, const std::string& file);
 

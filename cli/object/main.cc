@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/files/json_text.h"
 #include "core/hand/model_path.h"
 #include "core/hand/object_loader.h"
 #include "core/hand/solid.h"
@@ -81,8 +82,6 @@ Vector3d Size(const ObjectModel& object) {
   switch (object.kind) {
     case ObjectModel::Kind::kSphere:
       return Vector3d::Constant(2 * object.radius);
-    case ObjectModel::Kind::kCapsule:
-      return 2 * Vector3d(object.radius, object.radius, object.radius + object.half_length);
     case ObjectModel::Kind::kBox:
       return 2 * object.half_extents;
     case ObjectModel::Kind::kMesh:
@@ -94,8 +93,8 @@ Vector3d Size(const ObjectModel& object) {
 }
 
 const char* KindName(ObjectModel::Kind kind) {
-  constexpr const char* kNames[] = {"sphere", "box", "capsule", "mesh"};
-  return kNames[static_cast<int>(kind)];
+  if (kind == ObjectModel::Kind::kSphere) return "sphere";
+  return kind == ObjectModel::Kind::kBox ? "box" : "mesh";
 }
 
 Json ToJson(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -185,7 +184,7 @@ ExitCode Show(const std::string& name, const Options& given) {
   }
   if (given.contains("--quiet")) return shown.refusals.empty() ? ExitCode::kOk : ExitCode::kFailed;
   if (given.contains("--json")) {
-    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", JsonText(json));
   } else {
     fmt::print("{}\n", shown.file.string());
     for (const std::string& line : lines) fmt::print("  {}\n", line);
@@ -202,9 +201,7 @@ ExitCode Show(const std::string& name, const Options& given) {
 int Fail(const Options& given, const std::string& message, ExitCode code) {
   constexpr const char* kNext = "regrasp help object show";
   if (given.contains("--json"))
-    fmt::print(stderr, "{}\n",
-               Json{{"error", {{"message", message}, {"hint", kNext}}}}.dump(
-                   -1, ' ', false, Json::error_handler_t::replace));
+    fmt::print(stderr, "{}\n", JsonText(Json{{"error", {{"message", message}, {"hint", kNext}}}}));
   else
     fmt::print(stderr, "regrasp: {}\n  try: {}\n", message, kNext);
   return static_cast<int>(code);

@@ -1,5 +1,6 @@
 // The record of an incident as JSON, and its picture.
 
+#include "core/files/json_text.h"
 #include "core/gait/finger_gait.h"
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
@@ -114,7 +115,7 @@ Json IncidentJson(const Incident& incident, const HandModel& hand) {
 }
 
 std::string IncidentText(const Incident& incident, const HandModel& hand) {
-  return IncidentJson(incident, hand).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(IncidentJson(incident, hand)) + "\n";
 }
 
 void PruneIncidents(const std::filesystem::path& directory, std::size_t keep) {
