@@ -82,17 +82,16 @@ std::vector<std::string> FactList(std::span<const Frame> frames, const HandModel
           changed.empty() ? "default parameters" : "changed: " + changed};
 }
 
-std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object) {
-  std::vector<std::string> facts = FactList(frames, hand, object, "");
-  facts.pop_back();
+std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object,
+                  const std::string& changed) {
+  std::vector<std::string> facts = FactList(frames, hand, object, changed);
+  if (changed.empty()) facts.pop_back();
   return fmt::format("{}", fmt::join(facts, " · "));
 }
 
 std::string Facts(std::span<const Frame> frames, const HandModel& hand,
                   const PlotOptions& options) {
-  std::string text = Facts(frames, hand, options.object_name);
-  if (!options.changed.empty()) text += " · changed: " + options.changed;
-  return text;
+  return Facts(frames, hand, options.object_name, options.changed);
 }
 
 Axis TimeAxis(std::span<const Frame> frames, const Canvas& canvas) {

@@ -53,6 +53,18 @@ TEST_F(Snapshots, SameInputGivesTheSameBytesFromAnyThread) {
   }
 }
 
+TEST_F(Snapshots, EveryPictureNamesTheParametersThatDiffer) {
+  PlotOptions options;
+  options.changed = "gait.speed 1 (2)";
+  for (const PlotRow& plot : kPlotTable) {
+    PlotInput input = InputOf(run_, options);
+    for (PlotRun& run : input.explorations) run.changed = options.changed;
+    DrawPlot(plot.name, input, File(plot.name, ".svg"));
+    EXPECT_NE(Bytes(File(plot.name, ".svg")).find("changed: gait.speed 1 (2)"), std::string::npos)
+        << plot.name;
+  }
+}
+
 TEST_F(Snapshots, EmptyHistoryIsRefusedByPathAndCause) {
   for (const PlotRow& plot : kPlotTable) {
     const std::string path = File(plot.name, ".png");
