@@ -112,11 +112,11 @@ std::string FingersText(const HandModel& hand) {
     text += fmt::format("\n  {}: tip of {} with radius {:.1f} mm, {}", finger.name,
                         hand.links[static_cast<std::size_t>(finger.tip_link)].name,
                         1e3 * finger.tip_radius, DrivenJoints(finger));
-    for (const int j : finger.joints) text += "\n" + JointLine(hand, j);
+    for (const int j : finger.joints) text.append("\n").append(JointLine(hand, j));
   }
   if (hand.num_coupled > 0) text += "\n  coupled joints";
   for (int j = hand.num_joints(); j < hand.num_joints() + hand.num_coupled; ++j)
-    text += "\n" + JointLine(hand, j);
+    text.append("\n").append(JointLine(hand, j));
   return text;
 }
 
