@@ -15,6 +15,7 @@
 #include <cstring>
 
 #include "core/common/nearest_name.h"
+#include "core/files/json_text.h"
 #include "core/files/names.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
@@ -38,8 +39,8 @@ class JsonMessage : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&,
               spdlog::memory_buf_t& out) override {
-    const std::string text = Json(std::string(message.payload.data(), message.payload.size()))
-                                 .dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string text =
+        JsonText(Json(std::string(message.payload.data(), message.payload.size())));
     out.append(text.data(), text.data() + text.size());
   }
   std::unique_ptr<custom_flag_formatter> clone() const override {

@@ -12,6 +12,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/protocol/plot_table.h"
+
 namespace regrasp {
 namespace {
 
@@ -21,7 +23,6 @@ constexpr double kNarrowest = 1000;       // logical: curves and legends side by
 constexpr double kNarrowestColumn = 400;  // logical: curves with their legends below
 constexpr double kNarrowText = 0.8;       // of the size in a wide picture, but kSmallestText
 constexpr double kSubscript = 0.7, kSubscriptDrop = 0.2;  // of the text's size
-constexpr std::array<const char*, 5> kSuffixes = {".png", ".jpg", ".jpeg", ".pdf", ".svg"};
 
 std::string LowerSuffix(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
@@ -32,9 +33,9 @@ std::string LowerSuffix(const std::string& path) {
 
 std::string CheckedSuffix(const std::string& path) {
   std::string suffix = LowerSuffix(path);
-  if (std::find(kSuffixes.begin(), kSuffixes.end(), suffix) == kSuffixes.end())
-    throw std::runtime_error(fmt::format(
-        "{}: unsupported suffix '{}' (allowed: .png, .jpg, .jpeg, .pdf, .svg)", path, suffix));
+  if (std::ranges::find(kPlotSuffixes, suffix) == kPlotSuffixes.end())
+    throw std::runtime_error(fmt::format("{}: unsupported suffix '{}' (allowed: {})", path, suffix,
+                                         fmt::join(kPlotSuffixes, ", ")));
   return suffix;
 }
 

@@ -84,7 +84,9 @@ std::vector<LegendEntry> FeltFigures(const FeltPicture& picture) {
   if (judged.cells == 0) return {};
   const double bias = judged.mean_m * kMm;
   return {{fmt::format("rms error  {:.2f} mm", judged.rms_m * kMm), {}},
-          {fmt::format("bias  {:.2f} mm", std::abs(bias) < 0.005 ? 0 : bias), {}},
+          {fmt::format("bias  {}{:.2f} mm", bias < -0.005 ? "−" : "",
+                       std::abs(bias) < 0.005 ? 0 : std::abs(bias)),
+           {}},
           {fmt::format("normals off by  {:.1f}°", judged.normal_rad * 180 / std::numbers::pi), {}}};
 }
 

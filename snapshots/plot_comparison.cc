@@ -29,6 +29,31 @@ Pen PenOfRun(std::size_t run) {
   return kPens[run % kPens.size()];
 }
 
+/// What the runs have in common, then what is each one's own: "seed 1 · noise paper ·
+/// manipulability: simulated time 2.5 to 6.0 s · combined: ...".
+std::string ComparedFacts(std::span<const std::vector<std::string>> runs,
+                          std::span<const LabelledRun> labels) {
+  std::vector<std::string> parts, own(runs.size());
+  for (std::size_t i = 0; i < runs.front().size(); ++i) {
+    const std::string& first = runs.front()[i];
+    const bool common = std::ranges::all_of(runs, [&](const auto& run) { return run[i] == first; });
+    if (common && !first.empty()) parts.push_back(first);
+    for (std::size_t r = 0; !common && r < runs.size(); ++r)
+      own[r] += (own[r].empty() ? "" : ", ") + runs[r][i];
+  }
+  for (std::size_t r = 0; r < runs.size(); ++r)
+    if (!own[r].empty()) parts.push_back(labels[r].label + ": " + own[r]);
+  return fmt::format("{}", fmt::join(parts, " · "));
+}
+
+/// Of one run, with how its gradient was estimated.
+std::vector<std::string> FactsOfRun(std::span<const Frame> frames, const LabelledRun& run,
+                                    const HandModel& hand) {
+  std::vector<std::string> facts = FactList(frames, hand, run.object_name, run.changed);
+  facts.push_back(fmt::format("estimator {}", Name(frames.back().job.explore.estimator)));
+  return facts;
+}
+
 }  // namespace
 
 void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& hand,
@@ -38,6 +63,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     std::vector<double> t, phi_true, phi_sensed, stability, threshold;
   };
   std::vector<Run> curves;
+  std::vector<std::vector<std::string>> facts;
   Range time_range, phi_range, stability_range;
   std::string fingers;
   for (const LabelledRun& run : runs) {
@@ -59,6 +85,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     stability_range.Add(c.threshold);
     const std::string name = FingerName(hand, finger);
     if (fingers.find(name) == std::string::npos) fingers += (fingers.empty() ? "" : ", ") + name;
+    facts.push_back(FactsOfRun(c.frames, run, hand));
     curves.push_back(std::move(c));
   }
   if (curves.empty()) throw std::runtime_error(path + ": nothing to draw: no runs were given");
@@ -69,7 +96,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
                 options.title.empty()
                     ? fmt::format("Exploring the object's surface with the {} finger", fingers)
                     : options.title,
-                Facts(curves.front().frames, hand, options)) +
+                ComparedFacts(facts, runs)) +
       (canvas.narrow() ? 0 : 12);
   stability_range.Add(0);
   std::vector<LegendEntry> legend, gains;
@@ -142,8 +169,10 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
 
 void DrawComparison(const PlotInput& input, const std::string& path) {
   std::vector<LabelledRun> runs;
-  for (const auto& run : input.explorations)
-    runs.push_back({run.empty() ? "" : std::string(Name(run.back().job.explore.criterion)), run});
+  for (const PlotRun& run : input.explorations)
+    runs.push_back(
+        {run.frames.empty() ? "" : std::string(Name(run.frames.back().job.explore.criterion)),
+         run.frames, run.object_name, run.changed});
   // Numbered where the criterion does not tell them apart.
   if (std::ranges::all_of(runs, [&](const auto& r) { return r.label == runs[0].label; }))
     for (std::size_t i = 0; i < runs.size(); ++i) runs[i].label += fmt::format(" ({})", i + 1);

@@ -219,7 +219,7 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
   const double top = DrawTitle(
       &canvas,
       options.title.empty() ? "Contact points in the object's frame, as sensed" : options.title,
-      Facts(frames, hand, object.name));
+      Facts(frames, hand, object.name, options.changed));
   const std::vector<LegendGroup> legends = Legends(content, hand, object, top);
   const Layout layout(canvas, legends);
   layout.DrawLegends(&canvas, legends);

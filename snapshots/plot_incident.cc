@@ -137,8 +137,11 @@ std::vector<Moment> Moments(std::span<const Event> events, const IncidentNote& n
   return moments;
 }
 
+/// Of moments in general; one of a finger has its colour.
+const Pen kMomentPen{kInk, 1.6, {6, 4}};
+
 /// A line through everything and a label in one of kLabelRows rows below `y`; a label that finds no
-/// room is left out.
+/// room is left out: the legend says what such a line is. All are within the panels.
 void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
                  std::span<const Moment> moments) {
   const Box& area = panels.front().area;
@@ -146,11 +149,10 @@ void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
   taken.fill(-1e9);
   const auto at = [&](const Moment& moment) { return panels.front().At(moment.before_s, 0).x; };
   for (const Moment& moment : moments)
-    if (const double x = at(moment); x >= area.x)
-      canvas->Line({x, y + 6}, {x, panels.back().area.br().y}, {moment.colour, 1.6, {6, 4}});
+    canvas->Line({at(moment), y + 6}, {at(moment), panels.back().area.br().y},
+                 {moment.colour, kMomentPen.width, kMomentPen.dash});
   for (const Moment& moment : moments) {
     const double x = at(moment);
-    if (x < area.x) continue;
     // To the right of its mark, or to the left where there is more room.
     constexpr double kMark = 12;
     const double at_right = area.br().x - x - kMark, at_left = x - 8 - kMark;
@@ -181,9 +183,9 @@ void DrawLetter(Canvas* canvas, Point2 at, const HandModel& hand, int finger) {
                {.size = 15, .colour = kWhite, .align_x = AlignX::kCentre, .bold = true});
 }
 
-/// One for each panel. `limit`: of the lines that must not be crossed.
+/// One for each panel. `limit`: of the lines that must not be crossed; `events`: some are shown.
 std::array<LegendGroup, 3> Legends(const IncidentNote& note, const HandModel& hand,
-                                   const Pen& limit) {
+                                   const Pen& limit, bool events) {
   std::vector<LegendEntry> fingers;
   for (int f = 0; f < hand.num_fingers(); ++f)
     fingers.push_back({FingerName(hand, f), [&hand, f](Canvas* c, Point2 m) {
@@ -191,6 +193,7 @@ std::array<LegendGroup, 3> Legends(const IncidentNote& note, const HandModel& ha
                          DrawLetter(c, m, hand, f);
                        }});
   if (!note.ends.empty()) fingers.push_back(MarkEntry("last contact", Marker::kCross, kInk));
+  if (events) fingers.push_back(LineEntry("event, see above", kMomentPen));
   return {
       LegendGroup{"normal force, true", std::move(fingers)},
       LegendGroup{"load margin ρ, sensed",
@@ -211,7 +214,11 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   Canvas canvas(SizeOf(options, kNarrowHeight), path);
   const int n = hand.num_fingers();
   const Pen limit{kVermillion, 2, {12, 7}};
-  std::array<LegendGroup, 3> legends = Legends(note, hand, limit);
+  const auto before = Column(frames, [&](const Frame& f) { return f.time_s - note.time_s; });
+  std::vector<Moment> moments =
+      Moments(events, note, hand, note.time_s / std::max(1.0, static_cast<double>(note.tick)));
+  std::erase_if(moments, [&](const Moment& m) { return m.before_s < before.front(); });
+  std::array<LegendGroup, 3> legends = Legends(note, hand, limit, !moments.empty());
   const Layout layout(canvas, legends);
   const double left = layout.left, width = layout.width, bottom = layout.bottom;
   const double y = DrawHead(&canvas, options.title.empty() ? note.cause : options.title,
@@ -225,7 +232,6 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   const double panels_top = labels + 24 * kLabelRows - 6;
   const double room = bottom - panels_top - 2 * 22;
 
-  const auto before = Column(frames, [&](const Frame& f) { return f.time_s - note.time_s; });
   const Axis time =
       NiceAxis(before.front(), 0, canvas.narrow() ? 5 : 9, false, "time before the drop [s]");
   std::vector<std::vector<double>> forces;
@@ -241,8 +247,10 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   }
   const auto margin =
       Column(frames, [](const Frame& f) { return Holds(f) ? f.stability.load_margin : kNoValue; });
-  const auto error = Column(
-      frames, [](const Frame& f) { return (f.p_WO - f.p_WO_reference).norm() * kMillimetres; });
+  // Before the fingers hold it the object has no place.
+  const auto error = Column(frames, [](const Frame& f) {
+    return Holds(f) ? (f.p_WO - f.p_WO_reference).norm() * kMillimetres : kNoValue;
+  });
   Range margin_range, error_range;
   margin_range.Add(0);
   margin_range.Add(1.5 * note.margin_limit);
@@ -294,9 +302,7 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   }
   const double limit_y = panels[1].At(0, note.margin_limit).y;
   canvas.FillBox({left, limit_y, width, panels[1].area.br().y - limit_y}, Tint(kVermillion, 0.72));
-  DrawMoments(
-      &canvas, panels, labels,
-      Moments(events, note, hand, note.time_s / std::max(1.0, static_cast<double>(note.tick))));
+  DrawMoments(&canvas, panels, labels, moments);
 
   for (int f = 0; f < n; ++f)
     DrawCurve(&canvas, panels[0], before, forces[f], {LookOfFinger(f).colour, 3});

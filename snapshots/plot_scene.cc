@@ -168,7 +168,7 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
   const bool in_view = ObjectInView(frame, object);
   const double top =
       DrawTitle(canvas, options.title.empty() ? "Hand, object and contact forces" : options.title,
-                Facts({&frame, 1}, hand, object.name));
+                Facts({&frame, 1}, hand, object.name, options.changed));
   const Forces forces = ForcesOf(frame, hand);
   const std::vector<LegendGroup> legends = Legends(frame, hand, forces, in_view);
   const Layout layout(*canvas, legends, kNarrowGap);

@@ -12,12 +12,19 @@
 
 namespace regrasp {
 
+/// A stretch of a run, to be compared with others.
+struct PlotRun {
+  std::vector<Frame> frames;  ///< oldest first
+  std::string object_name;    ///< empty: left out of the facts
+  std::string changed;        ///< the parameters that differ from their defaults
+};
+
 /// What pictures are drawn of; each takes what its row names.
 struct PlotInput {
   std::vector<Frame> frames;  ///< oldest first
   std::vector<Event> events;
-  std::shared_ptr<const FeltSurface> felt;       ///< may be null
-  std::vector<std::vector<Frame>> explorations;  ///< oldest first
+  std::shared_ptr<const FeltSurface> felt;  ///< may be null
+  std::vector<PlotRun> explorations;        ///< oldest first
   IncidentNote incident;
   HandModel hand;
   ObjectModel object;

@@ -2,8 +2,8 @@
 
 /// Pictures of a run, drawn with OpenCV (which appears in no header of this folder but canvas.h).
 ///
-/// Every function draws one picture into `path`; the suffix chooses the format (.png, .jpg, .jpeg,
-/// .pdf, .svg).
+/// Every function draws one picture into `path`; the suffix chooses the format
+/// (kPlotSuffixes).
 /// The input is what leaves a session, Frame and Event, oldest first and in one run: a picture
 /// never touches the simulator. All of them may be called from any thread; none keeps state.
 ///
@@ -55,11 +55,14 @@ Pixels QualityPixels(std::span<const Frame> history, std::span<const Event> even
 struct LabelledRun {
   std::string label;              ///< for the legend, e.g. "manipulability"
   std::span<const Frame> frames;  ///< the part before the exploration is cut off
+  std::string object_name;        ///< as in PlotOptions, of this run
+  std::string changed;
 };
 
 /// Figure 2 of the paper: explorations that start from the same state, one curve each:
 /// manipulability of the exploring finger above, stability of the grasp below. Time counts from the
-/// first frame that explores (from the first frame of a run that never does).
+/// first frame that explores (from the first frame of a run that never does). The line of facts
+/// says what is common to the runs, then what is each one's own.
 void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& hand,
                            const PlotOptions& options, const std::string& path);
 

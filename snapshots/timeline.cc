@@ -68,22 +68,30 @@ std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
   return history.subspan(static_cast<std::size_t>(first - history.begin()));
 }
 
-std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object) {
+std::vector<std::string> FactList(std::span<const Frame> frames, const HandModel& hand,
+                                  const std::string& object, const std::string& changed) {
   const Frame& last = frames.back();
-  std::string text = fmt::format("seed {} · noise {}", last.seed, NoiseName(last.noise));
-  text += " · hand " + hand.name;
-  if (!object.empty()) text += " · object " + object;
-  text += fmt::format(" ({:.0f} g, µ {:.2g})", last.mass_kg * 1e3, last.friction);
-  if (frames.size() == 1) return text + fmt::format(" · simulated time {:.2f} s", last.time_s);
-  return text +
-         fmt::format(" · simulated time {:.2f} to {:.2f} s", frames.front().time_s, last.time_s);
+  return {fmt::format("seed {}", last.seed),
+          fmt::format("noise {}", NoiseName(last.noise)),
+          "hand " + hand.name,
+          fmt::format("{}({:.0f} g, µ {:.2g})", object.empty() ? "" : "object " + object + " ",
+                      last.mass_kg * 1e3, last.friction),
+          frames.size() == 1 ? fmt::format("simulated time {:.2f} s", last.time_s)
+                             : fmt::format("simulated time {:.2f} to {:.2f} s",
+                                           frames.front().time_s, last.time_s),
+          changed.empty() ? "default parameters" : "changed: " + changed};
+}
+
+std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object,
+                  const std::string& changed) {
+  std::vector<std::string> facts = FactList(frames, hand, object, changed);
+  if (changed.empty()) facts.pop_back();
+  return fmt::format("{}", fmt::join(facts, " · "));
 }
 
 std::string Facts(std::span<const Frame> frames, const HandModel& hand,
                   const PlotOptions& options) {
-  std::string text = Facts(frames, hand, options.object_name);
-  if (!options.changed.empty()) text += " · changed: " + options.changed;
-  return text;
+  return Facts(frames, hand, options.object_name, options.changed);
 }
 
 Axis TimeAxis(std::span<const Frame> frames, const Canvas& canvas) {

@@ -26,9 +26,14 @@ std::string Facts(std::span<const Frame> frames, const HandModel& hand, const Pl
 /// The time axis of these frames; a start within 0.1 s of a whole second is moved there.
 Axis TimeAxis(std::span<const Frame> frames, const Canvas& canvas);
 
-/// "seed 1 · noise paper · object sphere · hand shadow · 12.00–40.02 s": what a reader needs to
-/// repeat it.
-std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object);
+/// "seed 1 · noise paper · hand shadow · object sphere (80 g, µ 0.8) · simulated time 12 to 40 s":
+/// what a reader needs to repeat it.
+std::string Facts(std::span<const Frame> frames, const HandModel& hand, const std::string& object,
+                  const std::string& changed);
+
+/// The same one by one: every run has as many, in the same order.
+std::vector<std::string> FactList(std::span<const Frame> frames, const HandModel& hand,
+                                  const std::string& object, const std::string& changed);
 
 std::string FingerName(const HandModel& hand, int finger);
 

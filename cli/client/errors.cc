@@ -5,13 +5,12 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "core/files/json_text.h"
 #include "core/files/names.h"
 
 namespace regrasp::cli {
 
-std::string JsonQuote(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string JsonQuote(const std::string& text) { return JsonText(nlohmann::json(text)); }
 
 void PrintError(const CliError& error, bool json, bool color) {
   std::string text;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -14,6 +16,7 @@
 #include "cli/print/terminal_graphics.h"
 #include "core/files/draft.h"
 #include "core/files/read_file.h"
+#include "core/protocol/plot_table.h"
 
 namespace regrasp::cli {
 namespace {
@@ -41,6 +44,21 @@ std::string Bytes(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw CliError(kIo, "cannot read " + file, "ls -l " + file);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// In which format a picture named so is, lower case: ".png"; empty: nothing says, for a directory
+/// too. Refused where no picture ends so.
+std::string CheckedSuffix(const std::string& output, const std::string& name) {
+  std::string suffix = fs::path(output).extension().string();
+  std::error_code ignored;
+  if (suffix.empty() || fs::is_directory(output, ignored)) return "";
+  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (std::ranges::find(kPlotSuffixes, suffix) == kPlotSuffixes.end())
+    throw CliError(
+        kUsage, fmt::format("-o {}: a picture ends in {}", output, fmt::join(kPlotSuffixes, ", ")),
+        fmt::format("regrasp plot {} -o {}", name,
+                    fs::path(output).replace_extension(".png").string()));
+  return suffix;
 }
 
 /// Of run files: no daemon is asked.
@@ -82,13 +100,15 @@ ExitCode Plot(Context& context, const Invocation& typed) {
     throw CliError(kUsage,
                    "-o - writes the picture itself: it goes with none of --show, --json, --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " -o - > FILE.png");
+  const std::string suffix =
+      CheckedSuffix(invocation.Text("output"), Plain(invocation.params["name"]));
   if (invocation.Has("run")) {
     if (to_stdout)
       throw CliError(kUsage, "-o - is for pictures of the daemon", "regrasp plot NAME RUN -o FILE");
     return PlotRuns(context, invocation);
   }
   Invocation request = invocation;
-  if (const std::string suffix = fs::path(invocation.Text("output")).extension(); !suffix.empty()) {
+  if (!suffix.empty()) {
     request.params["file"] = Plain(invocation.params["name"]) + suffix;
     request.params["overwrite"] = true;  // only on the way to where the user named it
   }

@@ -15,6 +15,7 @@
 #include "cli/help/help.h"
 #include "cli/help/manual.h"
 #include "cli/shell/shell.h"
+#include "core/files/json_text.h"
 #include "core/quality/evaluate_json.h"
 
 namespace regrasp::cli {
@@ -33,9 +34,7 @@ ExitCode Call(Context& context, const Invocation& invocation) {
     }
   }
   const Json answer = context.client().Call(invocation.Text("method"), params);
-  context.Print(answer, [&] {
-    context.out().Line(answer.dump(2, ' ', false, Json::error_handler_t::replace));
-  });
+  context.Print(answer, [&] { context.out().Line(JsonText(answer, 2)); });
   return kOk;
 }
 

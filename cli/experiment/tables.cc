@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string_view>
 
@@ -74,6 +75,10 @@ std::string Escaped(std::string_view text) {
     if (std::string_view("%&_#{}$").find(c) != std::string_view::npos) out += '\\';
     out += c;
   }
+  for (std::size_t i = 0; i + 1 < out.size(); ++i)  // a minus sign, no hyphen
+    if (out[i] == '-' && std::isdigit(static_cast<unsigned char>(out[i + 1])) &&
+        (i == 0 || out[i - 1] == ' ' || out[i - 1] == '('))
+      out.replace(i, 1, "$-$");
   Replace(&out, {{"φ", "$\\varphi$"}, {"±", "$\\pm$"}, {"–", "--"}, {"°", "$^\\circ$"}});
   return out;
 }

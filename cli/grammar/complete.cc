@@ -1,12 +1,13 @@
 #include "cli/grammar/complete.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
+#include <span>
 
 #include "cli/client/context.h"
 #include "cli/grammar/grammar.h"
 #include "core/hand/model_path.h"
+#include "core/protocol/start_words.h"
 
 namespace regrasp::cli {
 namespace {
@@ -46,14 +47,12 @@ constexpr KnownElsewhere kKnownElsewhere[] = {
 /// Options whose words the daemon checks: as another method of the wire allows them, or `words`.
 struct CheckedByDaemon {
   std::string_view key, method, param;
-  std::array<std::string_view, 3> words = {};
+  std::span<const std::string_view> words = {};
 };
 constexpr CheckedByDaemon kCheckedByDaemon[] = {
-    {"noise", "noise.set", "preset"},
-    {"criterion", "explore", "criterion"},
-    {"estimator", "explore", "estimator"},
-    {"clock", "", "", {"continuous", "lockstep"}},
-    {"stepper", "", "", {"auto", "exact", "fast"}},
+    {"noise", "noise.set", "preset"},      {"criterion", "explore", "criterion"},
+    {"estimator", "explore", "estimator"}, {"clock", "", "", kClockWords},
+    {"stepper", "", "", kStepperWords},
 };
 
 /// The models in the usual places that may stand for this argument. A name goes without a daemon.
@@ -130,8 +129,7 @@ struct Collector {
     for (const std::string& name : ModelNames(command, arg)) Add(name, arg.help);
     for (const CheckedByDaemon& known : kCheckedByDaemon) {
       if (arg.wire || known.key != arg.key) continue;
-      for (const std::string_view word : known.words)
-        if (!word.empty()) Add(std::string(word), arg.help);
+      for (const std::string_view word : known.words) Add(std::string(word), arg.help);
       if (!known.method.empty())
         for (const auto& word : FindParam(*FindMethod(known.method), known.param)->values)
           Add(std::string(word), arg.help);

@@ -2,13 +2,12 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <deque>
 #include <set>
 
 #include "cli/client/errors.h"
 #include "cli/grammar/grammar.h"
-#include "cli/grammar/units.h"
+#include "cli/grammar/values.h"
 #include "core/common/nearest_name.h"
 
 // CLI11 splits the words; checking them is ours, because it accepts nan inside a range and says
@@ -49,72 +48,8 @@ void AddArg(CLI::App* app, Given* given) {
   }
 }
 
-std::string ArgName(const Arg& arg) {
-  if (arg.flags.empty()) return arg.metavar;
-  return arg.flags.substr(arg.flags.find("--") == std::string::npos ? 0 : arg.flags.find("--"));
-}
-
 std::string HelpHint(const std::string& words) {
   return words.empty() ? "regrasp help" : "regrasp help " + words;
-}
-
-void CheckRange(const Arg& arg, double typed) {
-  const double value = typed * arg.scale;
-  // Half a rounding of the unit conversion: the limit itself, typed in degrees, is allowed.
-  const double slack = 1e-12 * std::abs(value);
-  if (value >= arg.min - slack && value <= arg.max + slack) return;
-  const bool named =
-      !arg.unit.empty() || arg.scale != 1 || arg.metavar == "S" || arg.metavar == "HZ";
-  const std::string unit = named ? " " + (arg.unit.empty() ? arg.metavar : arg.unit) : "";
-  throw CliError(kUsage, arg.max >= 1e299
-                             ? fmt::format("{} {:g}: allowed are {:g}{} and more", ArgName(arg),
-                                           typed, arg.min / arg.scale, unit)
-                             : fmt::format("{} {:g}: allowed are {:g} to {:g}{}", ArgName(arg),
-                                           typed, arg.min / arg.scale, arg.max / arg.scale, unit));
-}
-
-Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
-  const std::string name = ArgName(arg);
-  switch (arg.kind) {
-    case ArgKind::kFlag:
-      return true;
-    case ArgKind::kText: {
-      if (arg.values.empty() ||
-          std::find(arg.values.begin(), arg.values.end(), text) != arg.values.end()) {
-        return text;
-      }
-      const auto nearest = NearestName(text, arg.values);
-      throw CliError(kUsage,
-                     fmt::format("{} '{}' is none of {}", name, text, fmt::join(arg.values, ", ")),
-                     nearest.empty() ? ""
-                                     : fmt::format("regrasp {}{} {}", scope,
-                                                   arg.flags.empty() ? "" : " " + name, nearest));
-    }
-    case ArgKind::kInteger: {
-      const double typed = ParseNumber(text, name);
-      if (typed != std::floor(typed) || std::abs(typed) > kMaxSafeInteger) {
-        throw CliError(kUsage, fmt::format("{}: '{}' is not an integer", name, text));
-      }
-      CheckRange(arg, typed);
-      return static_cast<std::int64_t>(typed);
-    }
-    case ArgKind::kNumber: {
-      const double typed = ParseQuantity(text, name, UnitOfKey(arg.key));
-      CheckRange(arg, typed);
-      return typed * arg.scale;
-    }
-    case ArgKind::kParameterValue:
-      return ParseParameterValue(text);
-    case ArgKind::kVector3: {
-      Json vector = Json::array();
-      for (const double typed : ParseQuantities(text, 3, name, UnitOfKey(arg.key))) {
-        CheckRange(arg, typed);
-        vector.push_back(typed * arg.scale);
-      }
-      return vector;
-    }
-  }
-  return text;
 }
 
 std::vector<std::string_view> FlagNames(const Node* node) {

@@ -109,15 +109,14 @@ Json FingersJson(const HandModel& hand) {
 std::string FingersText(const HandModel& hand) {
   std::string text;
   for (const Finger& finger : hand.fingers) {
-    text += fmt::format("\n  {}: tip of {} with radius {:.1f} mm, {} driven joint{}", finger.name,
+    text += fmt::format("\n  {}: tip of {} with radius {:.1f} mm, {}", finger.name,
                         hand.links[static_cast<std::size_t>(finger.tip_link)].name,
-                        1e3 * finger.tip_radius, finger.joints.size(),
-                        finger.joints.size() == 1 ? "" : "s");
-    for (const int j : finger.joints) text += "\n" + JointLine(hand, j);
+                        1e3 * finger.tip_radius, DrivenJoints(finger));
+    for (const int j : finger.joints) text.append("\n").append(JointLine(hand, j));
   }
   if (hand.num_coupled > 0) text += "\n  coupled joints";
   for (int j = hand.num_joints(); j < hand.num_joints() + hand.num_coupled; ++j)
-    text += "\n" + JointLine(hand, j);
+    text.append("\n").append(JointLine(hand, j));
   return text;
 }
 
@@ -154,9 +153,9 @@ std::vector<std::string> Warnings(const Loaded& loaded, int own_contacts) {
                     loaded.scenario.empty() ? "rest" : "preshape", own_contacts));
   for (const Finger& finger : loaded.model.hand.fingers)
     if (finger.joints.size() < 3)
-      warnings.push_back(fmt::format(
-          "finger {} has {} driven joint{}: it can hold, but a tip needs 3 to slide where it shall",
-          finger.name, finger.joints.size(), finger.joints.size() == 1 ? "" : "s"));
+      warnings.push_back(
+          fmt::format("finger {} has {}: it can hold, but a tip needs 3 to slide where it shall",
+                      finger.name, DrivenJoints(finger)));
   if (const std::string shared = SharedMotors(loaded.model.hand); !shared.empty())
     warnings.push_back(shared);
   const std::string_view few = FewFingers(loaded.model.hand.num_fingers());
@@ -182,6 +181,11 @@ std::string SharedMotors(const HandModel& hand) {
       "{} of {} fingers {} a motor of {} own: those that follow one motor cannot each be put on an "
       "object; {} are needed",
       own, hand.num_fingers(), own == 1 ? "has" : "have", own == 1 ? "its" : "their", needed);
+}
+
+std::string DrivenJoints(const Finger& finger) {
+  const std::size_t count = finger.joints.size();
+  return fmt::format("{} driven joint{}", count, count == 1 ? "" : "s");
 }
 
 std::string_view FewFingers(int fingers) {

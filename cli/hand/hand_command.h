@@ -60,6 +60,9 @@ std::string_view FewFingers(int fingers);
 /// others.
 std::string SharedMotors(const HandModel& hand);
 
+/// "3 driven joints".
+std::string DrivenJoints(const Finger& finger);
+
 /// Draws the hand in its preshape.
 void DrawHand(const LoadedScenario& model, const std::string& file);
 

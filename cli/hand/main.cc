@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "cli/hand/hand_command.h"
+#include "core/files/json_text.h"
 #include "core/files/names.h"
 
 namespace regrasp::hand {
@@ -29,14 +30,9 @@ double Options::Number(const std::string& flag, double otherwise, double min, do
 
 namespace {
 
-/// Names of files may be no UTF-8.
-std::string Text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 void TellFailure(const Options& options, const std::string& cause, const std::string& next) {
   if (options.Has("--json"))
-    fmt::print(stderr, "{}\n", Text(Json{{"error", {{"message", cause}, {"hint", next}}}}));
+    fmt::print(stderr, "{}\n", JsonText(Json{{"error", {{"message", cause}, {"hint", next}}}}));
   else
     fmt::print(stderr, "regrasp: {}\n  try: {}\n", cause, next);
 }
@@ -74,7 +70,7 @@ int Main(int argc, char** argv) {
       throw Failure(ExitCode::kUsage, fmt::format("regrasp-hand: unknown verb '{}'", options.verb),
                     "regrasp help hand check");
     if (!options.Has("--quiet"))
-      fmt::print("{}\n", options.Has("--json") ? Text(answer.json) : answer.text);
+      fmt::print("{}\n", options.Has("--json") ? JsonText(answer.json) : answer.text);
     if (std::fflush(stdout) != 0)
       throw Failure(ExitCode::kIo,
                     std::string("cannot write to standard output: ") + std::strerror(errno),

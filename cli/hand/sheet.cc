@@ -48,9 +48,8 @@ std::vector<std::string> Sheet::Remarks() const {
                     best.model.hand.fingers[static_cast<std::size_t>(g.opposing)].name, held));
   for (const Finger& finger : best.model.hand.fingers)
     if (finger.joints.size() < 3)
-      remarks.push_back(fmt::format("{} has {} driven joint{}: it holds, but cannot explore",
-                                    finger.name, finger.joints.size(),
-                                    finger.joints.size() == 1 ? "" : "s"));
+      remarks.push_back(fmt::format("{} has {}: it holds, but cannot explore", finger.name,
+                                    DrivenJoints(finger)));
   if (best.way.stuck >= 0)
     remarks.push_back(
         fmt::format("{} finds no straight way to its contact within its limits",

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/files/json_text.h"
 #include "core/hand/model_path.h"
 #include "core/hand/object_loader.h"
 #include "core/hand/solid.h"
@@ -185,7 +186,7 @@ ExitCode Show(const std::string& name, const Options& given) {
   }
   if (given.contains("--quiet")) return shown.refusals.empty() ? ExitCode::kOk : ExitCode::kFailed;
   if (given.contains("--json")) {
-    fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", JsonText(json));
   } else {
     fmt::print("{}\n", shown.file.string());
     for (const std::string& line : lines) fmt::print("  {}\n", line);
@@ -202,9 +203,7 @@ ExitCode Show(const std::string& name, const Options& given) {
 int Fail(const Options& given, const std::string& message, ExitCode code) {
   constexpr const char* kNext = "regrasp help object show";
   if (given.contains("--json"))
-    fmt::print(stderr, "{}\n",
-               Json{{"error", {{"message", message}, {"hint", kNext}}}}.dump(
-                   -1, ' ', false, Json::error_handler_t::replace));
+    fmt::print(stderr, "{}\n", JsonText(Json{{"error", {{"message", message}, {"hint", kNext}}}}));
   else
     fmt::print(stderr, "regrasp: {}\n  try: {}\n", message, kNext);
   return static_cast<int>(code);

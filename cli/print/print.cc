@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "cli/client/errors.h"
+#include "core/files/json_text.h"
 
 namespace regrasp::cli {
 namespace {
@@ -39,9 +40,7 @@ void FlattenInto(const std::string& name, const Json& value,
 
 }  // namespace
 
-void Output::AddJson(const Json& value) {
-  Line(value.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
+void Output::AddJson(const Json& value) { Line(JsonText(value)); }
 
 std::string CsvTable::Row(const Json& row) {
   std::string text;

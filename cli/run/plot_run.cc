@@ -107,7 +107,9 @@ std::vector<Pictured> Compared(const std::vector<std::string>& paths) {
   for (const std::string& path : paths)
     for (Pictured& one : Explorations(path, paths.size() == 1 ? kCompared : 1))
       all.push_back(std::move(one));
-  for (Pictured& one : all) all.front().input.explorations.push_back(std::move(one.input.frames));
+  for (Pictured& one : all)
+    all.front().input.explorations.push_back(
+        {std::move(one.input.frames), one.input.options.object_name, one.input.options.changed});
   return all;
 }
 

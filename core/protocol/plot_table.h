@@ -43,6 +43,10 @@ inline constexpr auto kPlotNames = [] {
   return names;
 }();
 
+/// What the name of a picture ends in: its format.
+inline constexpr std::array<std::string_view, 5> kPlotSuffixes = {".png", ".jpg", ".jpeg", ".pdf",
+                                                                  ".svg"};
+
 /// Null where there is no such picture.
 constexpr const PlotRow* FindPlot(std::string_view name) {
   const auto row = std::ranges::find(kPlotTable, name, &PlotRow::name);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/common/nearest_name.h"
+#include "core/files/json_text.h"
 #include "core/quality/evaluate.h"
 
 namespace regrasp {
@@ -45,7 +46,7 @@ Json Parse(const std::string& text) {
 }
 
 std::string Quoted(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = JsonText(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
 }

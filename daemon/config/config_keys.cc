@@ -8,6 +8,7 @@
 
 #include "core/common/nearest_name.h"
 #include "core/protocol/methods.h"
+#include "core/protocol/start_words.h"
 #include "core/sensing/noise.h"
 #include "daemon/config/config.h"
 #include "daemon/loop/pacing.h"
@@ -157,8 +158,8 @@ void CheckConfig(const DaemonConfig& config, const std::string& where) {
   CheckWord(where, "log_level", config.log_level,
             {"trace", "debug", "info", "warn", "error", "off"});
   CheckWord(where, "log_format", config.log_format, {"text", "json"});
-  CheckWord(where, "clock", config.clock, {"continuous", "lockstep"});
-  CheckWord(where, "stepper", config.stepper, {"fast", "exact", "auto"});
+  CheckWord(where, "clock", config.clock, {kClockWords.begin(), kClockWords.end()});
+  CheckWord(where, "stepper", config.stepper, {kStepperWords.begin(), kStepperWords.end()});
   if (config.hand.empty()) throw ConfigError(where + "hand is empty");
   if (config.max_clients < 1 || config.max_clients > 1000)
     throw ConfigError(

@@ -136,7 +136,7 @@ class ControlLoop {
   std::uint64_t pulse() const { return pulse_.load(std::memory_order_relaxed); }
   /// Any thread: makes a sleeping loop look around once.
   void Nudge() { input_.Notify(); }
-  /// Frames and events lost because the rings were full.
+  /// Frames and events lost because the rings were full; none in lockstep.
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   /// 99th percentile of the time that the last ticks took [s].
   double tick_p99() const { return tick_times_.p99(); }
@@ -168,6 +168,10 @@ class ControlLoop {
   void FinishStep(JobState state, const char* error);
   void EmitJob(const JobRecord& job);
   void EmitEvent(const Event& event);
+  /// Whether the ring has taken it. In lockstep it is waited for: what is told depends on the
+  /// commands, not on how soon it is fetched.
+  template <typename Queue, typename T>
+  bool Put(Queue* ring, const T& value);
   void CollectOutput();
   void Publish();
   void Acknowledge();

@@ -1,11 +1,14 @@
 // What the control thread tells: frames, events, jobs, the journal.
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "core/journal/saved_state.h"
 #include "daemon/loop/control_loop.h"
 
 namespace regrasp {
+
 void ControlLoop::Mark(std::uint64_t request, ControlRequest::Part part) {
   CollectOutput();  // jobs that have ended before it go before it
   Publish();        // whoever is told of the mark also has its frame
@@ -46,8 +49,19 @@ void ControlLoop::EmitNews(JournalNews news) {
     unsent_news_.push_back(std::move(news));
 }
 
+template <typename Queue, typename T>
+bool ControlLoop::Put(Queue* ring, const T& value) {
+  while (!ring->Push(value)) {
+    if (config_.clock == ClockMode::kContinuous || stopping_.load(std::memory_order_relaxed))
+      return false;
+    output_.Notify();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
 void ControlLoop::EmitEvent(const Event& event) {
-  if (events_.Push({event, run_}))
+  if (Put(&events_, PublishedEvent{event, run_}))
     output_.Notify();
   else
     dropped_.fetch_add(1, std::memory_order_relaxed);
@@ -78,7 +92,7 @@ void ControlLoop::Publish() {
   scratch_.step = step_;
   scratch_.run = run_;
   scratch_.commands = applied_;
-  publish_due_ = !frames_.Push(scratch_);
+  publish_due_ = !Put(&frames_, scratch_);
   if (publish_due_) dropped_.fetch_add(1, std::memory_order_relaxed);
   output_.Notify();
 }

@@ -18,7 +18,7 @@ constexpr std::uint64_t kMaxReadBytes = 256u << 20;
 }  // namespace
 
 std::string CheckedFileName(const std::string& name, std::string_view param,
-                            std::initializer_list<std::string_view> suffixes,
+                            const std::vector<std::string_view>& suffixes,
                             std::string_view example) {
   const auto refuse = [&](std::string message) {
     throw RpcException(RpcError{ErrorCode::kInvalidParams,
@@ -48,7 +48,7 @@ std::string ReadHead(const std::filesystem::path& path, std::uint64_t bytes) {
 }
 
 std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& directory,
-                                           std::initializer_list<std::string_view> suffixes) {
+                                           const std::vector<std::string_view>& suffixes) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   if (!std::filesystem::exists(directory, error) && !error) return files;  // nothing was written

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,7 +14,7 @@ namespace regrasp {
 /// A plain file name with one of the suffixes (any, when the list is empty): throws RpcException
 /// otherwise (rule 9). `example` is what the hint shows.
 std::string CheckedFileName(const std::string& name, std::string_view param,
-                            std::initializer_list<std::string_view> suffixes,
+                            const std::vector<std::string_view>& suffixes,
                             std::string_view example);
 
 /// Writes beside the target and renames: a reader sees the old file or the new one. Throws
@@ -29,7 +28,7 @@ std::string ReadHead(const std::filesystem::path& path, std::uint64_t bytes);
 /// The regular files of a directory with one of the suffixes and a plain name, sorted by name; none
 /// where the directory is missing. Throws std::runtime_error when it cannot be read.
 std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& directory,
-                                           std::initializer_list<std::string_view> suffixes);
+                                           const std::vector<std::string_view>& suffixes);
 /// The first of NAME.suffix, NAME-2.suffix ... that is not there yet.
 std::filesystem::path FreeFile(const std::filesystem::path& directory, const std::string& name,
                                std::string_view suffix);

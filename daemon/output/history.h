@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/session/frame.h"
@@ -25,9 +26,16 @@ class History {
   static constexpr std::size_t kExplorations = 2;
   static constexpr std::size_t kExplorationFrames = 6000;  ///< of one; 120 s, the rest is cut off
 
+  /// An exploration and what its frames do not tell.
+  struct Exploration {
+    std::vector<std::shared_ptr<const Frame>> frames;
+    std::string object, changed;  ///< its name; the parameters that differed from their defaults
+  };
+
   /// Keeps the frame when kRecentPeriod has passed since the last one kept, for long when
-  /// kFinePeriod has.
-  void Add(const Frame& frame);
+  /// kFinePeriod has. True when an exploration begins with it, which is to be described.
+  bool Add(const Frame& frame);
+  void DescribeExploration(std::string object, std::string changed);
   void Add(const Event& event);
   /// Forgets everything but the explorations: a new run began.
   void Clear();
@@ -38,10 +46,10 @@ class History {
   std::vector<std::shared_ptr<const Frame>> Recent() const {
     return {recent_.begin(), recent_.end()};
   }
-  /// Frames of the last explorations (jobs, not those of a gait) from where the finger begins to
+  /// The last explorations (jobs, not those of a gait) from where the finger begins to
   /// slide, oldest first, at most kExplorations of them. They outlive a reset, so that runs can be
   /// compared.
-  std::vector<std::vector<std::shared_ptr<const Frame>>> Explorations() const {
+  std::vector<Exploration> Explorations() const {
     return {explorations_.begin(), explorations_.end()};
   }
   /// Events kept, oldest first.
@@ -49,10 +57,10 @@ class History {
   std::size_t size() const { return fine_.size() + coarse_.size(); }
 
  private:
-  void AddToExploration(const std::shared_ptr<const Frame>& frame);
+  bool AddToExploration(const std::shared_ptr<const Frame>& frame);
 
   std::deque<std::shared_ptr<const Frame>> coarse_, fine_, recent_;
-  std::deque<std::vector<std::shared_ptr<const Frame>>> explorations_;
+  std::deque<Exploration> explorations_;
   bool exploring_ = false;  ///< the last frame kept belongs to explorations_.back()
   std::size_t aged_ = 0;    ///< frames that have left the fine part
   std::deque<Event> events_;

@@ -1,5 +1,6 @@
 // The record of an incident as JSON, and its picture.
 
+#include "core/files/json_text.h"
 #include "core/gait/finger_gait.h"
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
@@ -61,7 +62,9 @@ Json SamplesJson(const Incident& incident, const HandModel& hand) {
         NameOrNull(hand, frame.exploration.active ? frame.exploration.finger : -1));
     samples["stability"].push_back(frame.stability.active);
     samples["load_margin_n"].push_back(frame.stability.load_margin);
-    samples["object_error_m"].push_back((frame.p_WO - frame.p_WO_reference).norm());
+    samples["object_error_m"].push_back(HoldsAlone(frame.state, frame.stand_in)
+                                            ? Json((frame.p_WO - frame.p_WO_reference).norm())
+                                            : Json());
     samples["friction"].push_back(frame.friction);
     for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
       const FingerFrame& f = frame.fingers[i];
@@ -112,7 +115,7 @@ Json IncidentJson(const Incident& incident, const HandModel& hand) {
 }
 
 std::string IncidentText(const Incident& incident, const HandModel& hand) {
-  return IncidentJson(incident, hand).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return JsonText(IncidentJson(incident, hand)) + "\n";
 }
 
 void PruneIncidents(const std::filesystem::path& directory, std::size_t keep) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/common/nearest_name.h"
+#include "core/files/json_text.h"
 
 namespace regrasp {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 }
 
 std::string Shown(const JsonIn& value) {
-  std::string text = value.dump(-1, ' ', false, JsonIn::error_handler_t::replace);
+  std::string text = JsonText(value);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
   return text;
 }

@@ -16,7 +16,7 @@
 namespace regrasp::handlers {
 namespace {
 
-const std::initializer_list<std::string_view> kSuffixes = {".png", ".jpg", ".jpeg", ".pdf", ".svg"};
+const std::vector<std::string_view> kSuffixes(kPlotSuffixes.begin(), kPlotSuffixes.end());
 
 /// Everything the worker needs, so that it shares nothing with the I/O thread.
 struct Job {
@@ -24,7 +24,7 @@ struct Job {
   std::filesystem::path directory;
   std::vector<std::shared_ptr<const Frame>> frames;
   std::vector<Event> events;
-  std::vector<std::vector<std::shared_ptr<const Frame>>> explorations;
+  std::vector<History::Exploration> explorations;
   std::shared_ptr<const Incident> incident;  ///< null: the picture is of something else
   std::shared_ptr<const FeltSurface> felt;   ///< may be null
   HandModel hand;
@@ -51,8 +51,9 @@ void DrawInto(const Job& job, const std::string& path) {
     input.frames = Copy(job.frames);
     input.events = job.events;
     input.felt = job.felt;
-    for (const auto& exploration : job.explorations)
-      input.explorations.push_back(Copy(exploration));
+    for (const History::Exploration& exploration : job.explorations)
+      input.explorations.push_back(
+          {Copy(exploration.frames), exploration.object, exploration.changed});
     input.hand = job.hand;
   }
   input.object = *job.object;
@@ -147,7 +148,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
                          fmt::format("a {} shows the last {} explorations, there are {}", job->name,
                                      History::kExplorations, job->explorations.size()),
                          "regrasp explore ring --wait, then another with --criterion combined");
-    job->frames = job->explorations.back();
+    job->frames = job->explorations.back().frames;
   }
   job->events = service.history().Events();
   job->hand = service.hand();

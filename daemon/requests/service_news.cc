@@ -37,7 +37,9 @@ std::vector<Sample> Service::Drain() {
   const bool fresh = !frames.empty();
   for (const Published& published : frames) {
     if (published.run != newest_.run) history_.Clear();
-    history_.Add(published.frame);
+    if (history_.Add(published.frame))
+      history_.DescribeExploration(accepted_.object->name,
+                                   ChangedText(accepted_.parameters, journal_.config.model));
     if (recorder_) recorder_->Add(published);
     newest_ = published;
     ++frame_number_;

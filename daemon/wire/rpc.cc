@@ -8,6 +8,7 @@
 
 #include "core/common/nearest_name.h"
 #include "core/common/nesting_depth.h"
+#include "core/files/json_text.h"
 #include "core/protocol/methods.h"
 
 namespace regrasp {
@@ -198,9 +199,7 @@ Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error) {
            {{"code", static_cast<int>(error.code)}, {"message", error.message}, {"data", data}}}};
 }
 
-std::string ToText(const Json& message) {
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string ToText(const Json& message) { return JsonText(message); }
 
 std::string ToLine(const Json& message) { return ToText(message) + '\n'; }
 

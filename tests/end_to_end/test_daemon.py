@@ -135,6 +135,13 @@ class Session(DaemonCase):
         path = self.expect(0, "plot", "quality").stdout.strip()
         self.assertEqual(path, str(self.dir / "out" / "quality-2.png"))  # the first one stays
         self.refused(74, "plot", "quality", "-o", self.dir / "absent" / "x.png")
+        for run in ([], [self.dir / "no.mcap"]):
+            cause, hint = self.refused(2, "plot", "quality", *run, "-o", self.dir / "x.gif")
+            self.assertIn(f"{self.dir / 'x.gif'}: a picture ends in .png, .jpg, .jpeg, .pdf, .svg", cause)
+            self.assertIn(f"-o {self.dir / 'x.png'}", hint)
+        (self.dir / "pictures.d").mkdir()
+        self.expect(0, "plot", "quality", "-o", self.dir / "pictures.d")
+        self.assertEqual([file.suffix for file in (self.dir / "pictures.d").iterdir()], [".png"])
         # In the output directory itself it is there already; to standard output it goes as it is.
         self.expect(0, "plot", "quality", "-o", self.dir / "out" / "quality.png")
         done = subprocess.run([str(REGRASP), "-s", str(self.socket), "plot", "quality", "-o", "-"], env=environment(), capture_output=True, timeout=HANG_S, check=True)

@@ -235,6 +235,8 @@ class Pairs(ExperimentCase):
         latex = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "latex", "-o", self.dir / "grown").stdout
         self.assertEqual(latex.count("\\begin{tabular}"), latex.count("\\bottomrule"))
         self.assertIn("least\\_squares", latex)
+        self.assertRegex(latex, r"[ (]\$-\$\d")  # a minus, where a hyphen would be printed
+        self.assertNotRegex(latex, r"[ (]-\d")
         advice = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "markdown", "--precision", "0.05", "-o", self.dir / "grown").stdout
         self.assertIn("| secant | least_squares |", advice)
         self.assertIn("n for ±0.05", advice)

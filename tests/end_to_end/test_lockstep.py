@@ -45,6 +45,27 @@ class Lockstep(DaemonCase):
         self.expect(0, "up", "--speed", "max", "--seed", "1", "--models-dir", SOURCE / "models", "--output-dir", self.dir / "out")
         self.assertEqual(self.typed(), first)
 
+    def test_the_same_lines_give_the_same_pictures(self):
+        """Byte by byte, from another daemon too."""
+        def drawn():
+            for words in (LINES[0], LINES[1], LINES[3]):
+                self.expect(0, *words.split())
+            files = [self.dir / f"gait{suffix}" for suffix in (".png", ".pdf", ".svg")]
+            for file in files:
+                self.expect(0, "plot", "gait", "-o", file)
+            return [file.read_bytes() for file in files]
+
+        first = drawn()
+        self.expect(0, "down")
+        self.start_daemon()
+        for i, (picture, before) in enumerate(zip(drawn(), first)):
+            self.assertTrue(picture == before, f"picture {i}")
+        for seed in range(6):  # the mark of a reset was there by chance
+            self.expect(0, "reset", "--seed", seed)
+            self.expect(0, "step", "20", "--wait")
+            self.expect(0, "plot", "quality", "-o", self.dir / "reset.svg")
+            self.assertIn(">reset<", (self.dir / "reset.svg").read_text(), seed)
+
     def test_evaluate_takes_contacts_with_the_friction_that_was_felt(self):
         self.expect(0, "grasp", "--wait")
         self.expect(0, "explore", "ring", "--wait")

@@ -132,6 +132,17 @@ TEST_F(IncidentRecord, FrictionBelowWhatControlCountsOnIsSaid) {
   EXPECT_TRUE(Says(Make(), "Friction was 0.2, where control counts on 0.37"));
 }
 
+TEST_F(IncidentRecord, BeforeTheFingersHoldTheObjectHasNoPlaceToBeOff) {
+  for (Frame& frame : frames)
+    if (frame.tick < 4000) {
+      frame.state = SessionState::kGrasping;
+      frame.stand_in = true;
+    }
+  const Json error = IncidentJson(Make(), hand)["samples"]["object_error_m"];
+  EXPECT_TRUE(error.front().is_null());
+  EXPECT_TRUE(error.back().is_number());
+}
+
 TEST_F(IncidentRecord, NamesWhatDiffersFromTheDefaults) {
   EXPECT_EQ(IncidentJson(Make(), hand)["changed_parameters"], Json::object());
   source.changed = {{"gait.step_rad", 0.3}};

@@ -88,7 +88,9 @@ TEST(History, KeepsTheLastTwoExplorationsAcrossAReset) {
     frame.exploration.active = slides;
     for (int i = 0; i < frames; ++i) {
       frame.time_s += History::kFinePeriod;
-      history.Add(frame);
+      if (history.Add(frame))
+        history.DescribeExploration("object of " + std::to_string(job),
+                                    "changed in " + std::to_string(job));
     }
     history.Clear();
   };
@@ -100,9 +102,11 @@ TEST(History, KeepsTheLastTwoExplorationsAcrossAReset) {
   run(5, SessionState::kExploring, 6, false);  // refused before its finger slid
   const auto kept = history.Explorations();
   ASSERT_EQ(kept.size(), History::kExplorations);
-  EXPECT_EQ(kept[0].size(), 7u);
-  EXPECT_EQ(kept[1].size(), 9u);
-  EXPECT_EQ(kept[1].front()->job.id, 4);
+  EXPECT_EQ(kept[0].frames.size(), 7u);
+  EXPECT_EQ(kept[1].frames.size(), 9u);
+  EXPECT_EQ(kept[1].frames.front()->job.id, 4);
+  EXPECT_EQ(kept[0].object, "object of 3");
+  EXPECT_EQ(kept[1].changed, "changed in 4");
 }
 
 TEST(JobTable, IgnoresNewsOlderThanTheEnd) {

@@ -1,0 +1,81 @@
+#include "cli/grammar/values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/client/errors.h"
+#include "cli/grammar/units.h"
+#include "core/common/nearest_name.h"
+
+namespace regrasp::cli {
+namespace {
+
+void CheckRange(const Arg& arg, double typed) {
+  const double value = typed * arg.scale;
+  // Half a rounding of the unit conversion: the limit itself, typed in degrees, is allowed.
+  const double slack = 1e-12 * std::abs(value);
+  if (value >= arg.min - slack && value <= arg.max + slack) return;
+  const bool named =
+      !arg.unit.empty() || arg.scale != 1 || arg.metavar == "S" || arg.metavar == "HZ";
+  const std::string unit = named ? " " + (arg.unit.empty() ? arg.metavar : arg.unit) : "";
+  throw CliError(kUsage, arg.max >= 1e299
+                             ? fmt::format("{} {:g}: allowed are {:g}{} and more", ArgName(arg),
+                                           typed, arg.min / arg.scale, unit)
+                             : fmt::format("{} {:g}: allowed are {:g} to {:g}{}", ArgName(arg),
+                                           typed, arg.min / arg.scale, arg.max / arg.scale, unit));
+}
+
+}  // namespace
+
+std::string ArgName(const Arg& arg) {
+  if (arg.flags.empty()) return arg.metavar;
+  return arg.flags.substr(arg.flags.find("--") == std::string::npos ? 0 : arg.flags.find("--"));
+}
+
+Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
+  const std::string name = ArgName(arg);
+  switch (arg.kind) {
+    case ArgKind::kFlag:
+      return true;
+    case ArgKind::kText: {
+      if (arg.values.empty() ||
+          std::find(arg.values.begin(), arg.values.end(), text) != arg.values.end()) {
+        return text;
+      }
+      const auto nearest = NearestName(text, arg.values);
+      throw CliError(kUsage,
+                     fmt::format("{} '{}' is none of {}", name, text, fmt::join(arg.values, ", ")),
+                     nearest.empty() ? ""
+                                     : fmt::format("regrasp {}{} {}", scope,
+                                                   arg.flags.empty() ? "" : " " + name, nearest));
+    }
+    case ArgKind::kInteger: {
+      const double typed = ParseNumber(text, name);
+      if (typed != std::floor(typed) || std::abs(typed) > kMaxSafeInteger) {
+        throw CliError(kUsage, fmt::format("{}: '{}' is not an integer", name, text));
+      }
+      CheckRange(arg, typed);
+      return static_cast<std::int64_t>(typed);
+    }
+    case ArgKind::kNumber: {
+      const double typed = ParseQuantity(text, name, UnitOfKey(arg.key));
+      CheckRange(arg, typed);
+      return typed * arg.scale;
+    }
+    case ArgKind::kParameterValue:
+      return ParseParameterValue(text);
+    case ArgKind::kVector3: {
+      Json vector = Json::array();
+      for (const double typed : ParseQuantities(text, 3, name, UnitOfKey(arg.key))) {
+        CheckRange(arg, typed);
+        vector.push_back(typed * arg.scale);
+      }
+      return vector;
+    }
+  }
+  return text;
+}
+
+}  // namespace regrasp::cli
