@@ -17,19 +17,17 @@ namespace {
 constexpr double kSharp =
     0.8;  // cosine between two faces below which their common edge is sharp (37°)
 
-/// Rings about z from the lower to the upper pole; `half_length` pulls the two halves of a sphere
-/// apart.
-ObjectMesh RoundMesh(double radius, double half_length) {
+/// Rings about z from the lower to the upper pole.
+ObjectMesh RoundMesh(double radius) {
   constexpr int kAround = 72, kUp = 36;
   ObjectMesh mesh;
   for (int i = 0; i <= kUp; ++i) {
     const double latitude = std::numbers::pi * (static_cast<double>(i) / kUp - 0.5);
-    const double shift = 2 * i < kUp ? -half_length : 2 * i > kUp ? half_length : 0;
     for (int j = 0; j < kAround; ++j) {
       const double a = 2 * std::numbers::pi * j / kAround;
       mesh.vertices_O.emplace_back(radius * std::cos(latitude) * std::cos(a),
                                    radius * std::cos(latitude) * std::sin(a),
-                                   radius * std::sin(latitude) + shift);
+                                   radius * std::sin(latitude));
     }
   }
   for (int i = 0; i < kUp; ++i)
@@ -103,9 +101,7 @@ void Cut(const ObjectMesh& mesh, const Vector3d& n, double offset,
 ObjectMesh MeshOf(const ObjectModel& object) {
   switch (object.kind) {
     case ObjectModel::Kind::kSphere:
-      return RoundMesh(object.radius, 0);
-    case ObjectModel::Kind::kCapsule:
-      return RoundMesh(object.radius, object.half_length);
+      return RoundMesh(object.radius);
     case ObjectModel::Kind::kBox:
       return BoxMesh(object.half_extents);
     case ObjectModel::Kind::kMesh:

@@ -66,11 +66,7 @@ std::vector<Body> Bodies(const Frame& frame, const HandModel& hand, const Object
   body.X_WB.translation() = frame.p_WO;
   switch (object.kind) {
     case ObjectModel::Kind::kSphere:
-    case ObjectModel::Kind::kCapsule:
       body.radius = object.radius;
-      body.b_B =
-          Vector3d(0, 0, object.kind == ObjectModel::Kind::kCapsule ? object.half_length : 0);
-      body.a_B = -body.b_B;
       break;
     case ObjectModel::Kind::kBox:
       body.kind = Body::Kind::kBox;

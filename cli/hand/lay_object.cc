@@ -25,7 +25,6 @@ std::vector<Vector3d> CornersOf(const ObjectModel& object) {
   if (object.kind == ObjectModel::Kind::kMesh) return object.vertices_O;
   Vector3d half = object.half_extents;
   if (object.kind != ObjectModel::Kind::kBox) half.setConstant(object.radius);
-  if (object.kind == ObjectModel::Kind::kCapsule) half.z() += object.half_length;
   const auto corners = BoxCorners(half);
   return {corners.begin(), corners.end()};
 }

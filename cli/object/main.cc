@@ -82,8 +82,6 @@ Vector3d Size(const ObjectModel& object) {
   switch (object.kind) {
     case ObjectModel::Kind::kSphere:
       return Vector3d::Constant(2 * object.radius);
-    case ObjectModel::Kind::kCapsule:
-      return 2 * Vector3d(object.radius, object.radius, object.radius + object.half_length);
     case ObjectModel::Kind::kBox:
       return 2 * object.half_extents;
     case ObjectModel::Kind::kMesh:
@@ -95,8 +93,8 @@ Vector3d Size(const ObjectModel& object) {
 }
 
 const char* KindName(ObjectModel::Kind kind) {
-  constexpr const char* kNames[] = {"sphere", "box", "capsule", "mesh"};
-  return kNames[static_cast<int>(kind)];
+  if (kind == ObjectModel::Kind::kSphere) return "sphere";
+  return kind == ObjectModel::Kind::kBox ? "box" : "mesh";
 }
 
 Json ToJson(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }

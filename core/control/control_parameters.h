@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/hand/reach_rule.h"
 #include "core/quality/measures.h"
 
 namespace regrasp {
@@ -74,6 +75,8 @@ struct ControlParameters {
   double grip_ramp_s = 0.3;         ///< from waiting force to grip
   double stand_in_release_s = 0.5;  ///< after the ramp the stand-in lets go
   double settle_s = 0.7;            ///< then so long until `holding`
+  // How a finger is taken to follow an object that turns: gait and the criterion reserve.
+  ReachRule reach;
   // Stability.
   Measure stability_measure = Measure::kMinSingularValue;  ///< what stability means
   double stability_hysteresis = 1.05;  ///< once it is, it stays so up to so much of the threshold

@@ -24,7 +24,7 @@ ObjectiveValue Objective(const HandModel& hand, const ObjectiveOf& of, const Est
   if (of.criterion == Criterion::kReserve) {
     const FingerPosture now = PostureAt(hand, of.finger, AnglesOf(hand, of.finger, estimate.q));
     const double reserve = MotionReserve(hand, of.finger, now, estimate.p_WO, of.turn_axis_W,
-                                         exploration.limit_margin, kMostReserve, {});
+                                         exploration.limit_margin, kMostReserve, control.reach);
     const double missing = std::max(0.0, exploration.reserve_margin_wanted - of.margin);
     return {reserve + exploration.reserve_manipulability * manipulability -
                 exploration.reserve_margin_cost * missing,

@@ -49,8 +49,8 @@ struct ObjectiveOf {
 ///
 ///   phi = MotionReserve + c_m manipulability − c_ρ max(0, ρ wanted − ρ)
 ///
-/// the reserve with joints exploration.limit_margin inside their limits, at most kMostReserve: from
-/// there on, or without an axis, the others decide.
+/// the reserve by control.reach, as the gait counts it, with joints exploration.limit_margin inside
+/// their limits, at most kMostReserve: from there on, or without an axis, the others decide.
 ObjectiveValue Objective(const HandModel& hand, const ObjectiveOf& of, const Estimate& estimate,
                          const ControlParameters& control, const ExplorationParameters& exploration,
                          bool was_on_stability);

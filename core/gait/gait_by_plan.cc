@@ -205,7 +205,7 @@ double FingerGait::ReserveOf(const ControlTick& tick, int finger) const {
   const FingerPosture now =
       PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, tick.estimate.q));
   return SureReserve(tick.hand, finger, now, tick.estimate.p_WO, sign_ * request_.axis_W,
-                     tick.gait.limit_margin, tick.gait.reserve_needed, tick.gait.reach);
+                     tick.gait.limit_margin, tick.gait.reserve_needed, tick.control.reach);
 }
 
 }  // namespace regrasp

@@ -2,7 +2,6 @@
 
 #include "core/exploration/criterion.h"
 #include "core/exploration/exploration_parameters.h"
-#include "core/hand/reach_rule.h"
 
 namespace regrasp {
 
@@ -162,7 +161,6 @@ struct GaitParameters {
   double rise_most = 0.010;         ///< ... and lifts it by at most so much more [m]
   double seek_way = 0.025;          ///< it looks so far inwards for a surface it has missed [m]
   // Planning a landing (landing_plan.h) ...
-  ReachRule reach;
   double landing_limit_margin = 0.05;  ///< of a joint there [rad]
   double landing_missing = 0.0015;     ///< a tip this far from its target does not reach it [m]
   double landing_far = 0.010;          ///< distance from home that costs landing_far_cost [m]

@@ -64,7 +64,7 @@ double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& the
     const Quaterniond turn = FromRotationVector(turn_W);
     const Vector3d p_WF = p_WO + turn * (there.p_WF - p_WO);
     const FingerPosture turned =
-        ReachFor(tick.hand, finger, there, p_WF, 0.0, kReachSteps, tick.gait.reach);
+        ReachFor(tick.hand, finger, there, p_WF, 0.0, kReachSteps, tick.control.reach);
     gap = std::min(gap, GapToObject(turned.middle, tick, q_OW * turn.conjugate()));
   }
   return tick.gait.landing_penalty *
@@ -126,7 +126,7 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   const Vector3d p_WF = estimate.p_WO + estimate.q_WO * landing.p_OF;
   const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
   const FingerPosture there = ReachFor(hand, finger, now, p_WF, tick.gait.landing_limit_margin,
-                                       kReachSteps, tick.gait.reach);
+                                       kReachSteps, tick.control.reach);
   const double missing = (there.p_WF - p_WF).norm();
   landing.score = CheapScore(tick, there, &landing) -
                   tick.gait.landing_far_cost * offset.squaredNorm() / Square(tick.gait.landing_far);
@@ -161,7 +161,7 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   if (!request_.axis_W.isZero()) {
     landing->reserve =
         SureReserve(hand, finger, there, estimate.p_WO, request_.axis_W, tick.gait.limit_margin,
-                    tick.gait.reserve_wanted, tick.gait.reach);
+                    tick.gait.reserve_wanted, tick.control.reach);
     score += Share(landing->reserve, tick.gait.reserve_wanted);
     // The finger with the least reserve ends the coming motion for all of them.
     const double short_of =

@@ -56,7 +56,7 @@ bool StancePlan::Move(const ControlTick& tick, int finger, Landings* trial) {
   const Vector3d p_WF = estimate.p_WO + estimate.q_WO * p_OF;
   const FingerPosture now = PostureAt(tick.hand, finger, AnglesOf(tick.hand, finger, estimate.q));
   const FingerPosture there = ReachFor(tick.hand, finger, now, p_WF, tick.gait.stance_limit_margin,
-                                       kReachSteps, tick.gait.reach);
+                                       kReachSteps, tick.control.reach);
   if ((there.p_WF - p_WF).norm() > tick.gait.landing_missing) return false;
   for (int i : tick.grasp.without(finger)) {
     const double apart = tick.hand.fingers[finger].tip_radius + tick.hand.fingers[i].tip_radius;

@@ -16,7 +16,7 @@ double TurnAlong::Update(const ControlTick& tick, const ObjectWrench& wrench, Fi
     const FingerPosture now = PostureAt(tick.hand, next_, AnglesOf(tick.hand, next_, estimate.q));
     reserve_[next_] =
         SureReserve(tick.hand, next_, now, estimate.p_WO, axis_W, parameters.limit_margin,
-                    parameters.along_speed * parameters.along_ahead_s, parameters.reach);
+                    parameters.along_speed * parameters.along_ahead_s, tick.control.reach);
   }
   double wanted = most;
   for (int i : holds) wanted = std::min(wanted, reserve_[i] / parameters.along_ahead_s);

@@ -10,11 +10,11 @@
 namespace regrasp {
 
 struct ObjectModel {
-  enum class Kind { kSphere, kBox, kCapsule, kMesh };
+  /// As run files number them; 2 was a capsule.
+  enum class Kind { kSphere = 0, kBox = 1, kMesh = 3 };
   std::string name;
   Kind kind = Kind::kSphere;
-  double radius = 0.025;                     ///< sphere, capsule [m]
-  double half_length = 0;                    ///< capsule: half the segment along z [m]
+  double radius = 0.025;                     ///< sphere [m]
   Vector3d half_extents = Vector3d::Zero();  ///< box [m]
   std::vector<Vector3d> vertices_O;          ///< mesh [m]
   std::vector<Eigen::Vector3i> triangles;    ///< mesh, counter-clockwise seen from outside

@@ -208,8 +208,6 @@ Solid ObjectSolid(const ObjectModel& object) {
       return SphereSolid(object.radius);
     case ObjectModel::Kind::kBox:
       return BoxSolid(object.half_extents);
-    case ObjectModel::Kind::kCapsule:
-      return CapsuleSolid(object.radius, object.half_length);
     case ObjectModel::Kind::kMesh:
       break;
   }

@@ -157,9 +157,11 @@ void CheckObject(const ObjectModel& object) {
   CheckName("object", object.name);
   CheckRange("kind of the object", static_cast<double>(object.kind), 0,
              static_cast<double>(Kind::kMesh));
-  const bool round = object.kind == Kind::kSphere || object.kind == Kind::kCapsule;
-  CheckRange("radius of the object", object.radius, round ? 1e-6 : 0, kMaxLength);
-  CheckRange("half_length", object.half_length, 0, kMaxLength);
+  constexpr int kFormerCapsule = 2;
+  if (static_cast<int>(object.kind) == kFormerCapsule)
+    throw JournalError("the object is a capsule, which only former versions had");
+  CheckRange("radius of the object", object.radius, object.kind == Kind::kSphere ? 1e-6 : 0,
+             kMaxLength);
   for (int i = 0; i < 3; ++i)
     CheckRange("half_extents of the object", object.half_extents[i],
                object.kind == Kind::kBox ? 1e-6 : 0, kMaxLength);

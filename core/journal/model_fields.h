@@ -87,7 +87,6 @@ void Fields(A& a, ObjectModel& o) {
   a("name", o.name);
   a("kind", o.kind);
   a("radius", o.radius);
-  a("half_length", o.half_length);
   a("half_extents", o.half_extents);
   a("vertices_O", o.vertices_O);
   a("triangles", o.triangles);

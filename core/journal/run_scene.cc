@@ -147,10 +147,7 @@ Json ObjectEntity(const ObjectModel& object, std::uint64_t time_ns) {
   using Kind = ObjectModel::Kind;
   const Json colour = Colour(0.93, 0.60, 0.20, 0.7);
   Json entity = Entity("object", kObject, time_ns);
-  const Vector3d half_axis(0, 0, object.half_length);
   if (object.kind == Kind::kSphere) AddSphere(Vector3d::Zero(), 2 * object.radius, colour, &entity);
-  if (object.kind == Kind::kCapsule)
-    AddCapsule(-half_axis, half_axis, object.radius, colour, &entity);
   if (object.kind == Kind::kBox)
     AddBox(Isometry3d::Identity(), object.half_extents, colour, &entity);
   if (object.kind != Kind::kMesh) return entity;

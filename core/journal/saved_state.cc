@@ -10,7 +10,7 @@ namespace regrasp {
 namespace {
 
 constexpr char kFormat[] = "regrasp-state";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 /// What comes before the fields.
 struct Head {

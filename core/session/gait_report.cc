@@ -25,7 +25,6 @@ double GaitReport::TruePhi(const Regrasp& regrasp, const ActivityContext& contex
 void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& context) {
   last_.finger = regrasp.finger();
   last_.criterion = regrasp.slide().request().criterion;
-  last_.on_stability = regrasp.slide().on_stability();
   last_.aborted = regrasp.aborted();
   last_.phi_after = TruePhi(regrasp, context);
   if (!regrasp.request().explore) last_.phi_start = last_.phi_before;

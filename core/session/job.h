@@ -126,7 +126,6 @@ struct MoveResult {
 struct RegraspRecord {
   int finger = -1;
   Criterion criterion = Criterion::kManipulability;
-  bool on_stability = false;  ///< `switched`: stability was the objective at the end
   bool aborted = false;
   double phi_before = 0;  ///< before the finger left
   double phi_start = 0;   ///< where Algorithm 1 began; phi_before without exploration
@@ -135,7 +134,6 @@ struct RegraspRecord {
   void Fields(V& v) {
     v("finger", finger, v.Finger());
     v("criterion", criterion, kLastCriterion);
-    v("on_stability", on_stability);
     v("aborted", aborted);
     v("phi_before", phi_before);
     v("phi_start", phi_start);

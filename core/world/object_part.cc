@@ -30,9 +30,6 @@ ObjectPart::ObjectPart(const ObjectModel& object, dBodyID object_body) {
     case ObjectModel::Kind::kSphere:
       geom = dCreateSphere(nullptr, object.radius);
       break;
-    case ObjectModel::Kind::kCapsule:
-      geom = dCreateCapsule(nullptr, object.radius, 2 * object.half_length);
-      break;
     case ObjectModel::Kind::kBox:
       geom = dCreateBox(nullptr, 2 * object.half_extents.x(), 2 * object.half_extents.y(),
                         2 * object.half_extents.z());

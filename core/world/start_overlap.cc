@@ -35,10 +35,6 @@ class ObjectDistance {
         return p_O.norm() - object_.radius;
       case ObjectModel::Kind::kBox:
         return ToBox(p_O, object_.half_extents);
-      case ObjectModel::Kind::kCapsule: {
-        const double along = std::clamp(p_O.z(), -object_.half_length, object_.half_length);
-        return (p_O - along * Vector3d::UnitZ()).norm() - object_.radius;
-      }
       case ObjectModel::Kind::kMesh:
         break;
     }
@@ -66,11 +62,6 @@ Core CoreOf(const ObjectModel& object) {
   switch (object.kind) {
     case ObjectModel::Kind::kSphere:
       return {{Vector3d::Zero()}, object.radius};
-    case ObjectModel::Kind::kCapsule: {
-      Core core{{}, object.radius};
-      for (int k = -4; k <= 4; ++k) core.points_O.emplace_back(0, 0, k * object.half_length / 4);
-      return core;
-    }
     case ObjectModel::Kind::kBox: {
       Core core{{Vector3d::Zero()}, 0};
       std::ranges::copy(BoxCorners(object.half_extents), std::back_inserter(core.points_O));

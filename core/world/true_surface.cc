@@ -9,7 +9,6 @@ namespace regrasp {
 TrueSurface::TrueSurface(const ObjectModel& object)
     : kind_(object.kind),
       radius_(object.radius),
-      half_length_(object.half_length),
       half_extents_(object.half_extents),
       vertices_O_(object.vertices_O),
       triangles_(object.triangles) {
@@ -21,10 +20,6 @@ TrueSurface::Nearest TrueSurface::At(const Vector3d& p) const {
   switch (kind_) {
     case ObjectModel::Kind::kSphere:
       return {p.norm() - radius_, p.normalized()};
-    case ObjectModel::Kind::kCapsule: {
-      const Vector3d core(0, 0, std::clamp(p.z(), -half_length_, half_length_));
-      return {(p - core).norm() - radius_, (p - core).normalized()};
-    }
     case ObjectModel::Kind::kBox: {
       const Vector3d beyond = p.cwiseAbs() - half_extents_;
       int axis = 0;

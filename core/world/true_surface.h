@@ -24,7 +24,7 @@ class TrueSurface {
 
  private:
   ObjectModel::Kind kind_;
-  double radius_, half_length_;
+  double radius_;
   Vector3d half_extents_;
   std::vector<Vector3d> vertices_O_;
   std::vector<Eigen::Vector3i> triangles_;

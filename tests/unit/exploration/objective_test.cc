@@ -79,14 +79,20 @@ TEST_F(ObjectiveTest, ReserveCountsManipulabilityAndAMarginThatIsMissing) {
     return value.phi;
   };
   const FingerPosture now = PostureAt(hand_, 2, AnglesOf(hand_, 2, estimate_.q));
-  const double reserve = MotionReserve(hand_, 2, now, estimate_.p_WO, axis,
-                                       exploration.limit_margin, kMostReserve, {});
+  const auto reserve_by = [&](const ReachRule& rule) {
+    return MotionReserve(hand_, 2, now, estimate_.p_WO, axis, exploration.limit_margin,
+                         kMostReserve, rule);
+  };
+  const double reserve = reserve_by({});
   EXPECT_GT(reserve, 0.05);
   EXPECT_LT(reserve, kMostReserve);
   const double manipulability = 0.3 * estimate_.fingers[2].manipulability;
   EXPECT_NEAR(phi(axis, 1), reserve + manipulability, 1e-12);
   EXPECT_NEAR(phi(axis, 0.4), reserve + manipulability - 0.2, 1e-12);
   EXPECT_NEAR(phi(Vector3d::Zero(), 1), kMostReserve + manipulability, 1e-12);
+  parameters_.reach = {.middle_pull = 0, .tolerance = 0.0005};
+  EXPECT_NE(reserve_by(parameters_.reach), reserve);
+  EXPECT_NEAR(phi(axis, 1), reserve_by(parameters_.reach) + manipulability, 1e-12);
 }
 
 TEST_F(ObjectiveTest, TheAxisOfTheTurnHasNoLength) {

@@ -59,8 +59,8 @@ TEST_F(LandingPlanTest, ReserveShrinksByWhatTheObjectHasTurned) {
   double all = 0;
   for (int i = 0; i < hand.num_fingers(); ++i) {
     const FingerPosture posture = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
-    const double reserve =
-        MotionReserve(hand, i, posture, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0, gait.reach);
+    const double reserve = MotionReserve(hand, i, posture, estimate.p_WO, -Vector3d::UnitZ(), 0.03,
+                                         3.0, control.reach);
     if (reserve > all) finger = i;
     all = std::max(all, reserve);
   }
@@ -69,8 +69,8 @@ TEST_F(LandingPlanTest, ReserveShrinksByWhatTheObjectHasTurned) {
   const FingerPosture now = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
   const Vector3d r = FromRotationVector({0, 0, -0.2}) * (now.p_WF - estimate.p_WO);
   const FingerPosture turned = ReachFor(hand, finger, now, estimate.p_WO + r, 0.0, 20);
-  const double rest =
-      MotionReserve(hand, finger, turned, estimate.p_WO, -Vector3d::UnitZ(), 0.03, 3.0, gait.reach);
+  const double rest = MotionReserve(hand, finger, turned, estimate.p_WO, -Vector3d::UnitZ(), 0.03,
+                                    3.0, control.reach);
   EXPECT_NEAR(all - rest, 0.2, 0.13);  // steps of 0.06 rad, and another way through the null space
 }
 
@@ -122,7 +122,7 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
     const LandingPlan::Request request = Home(finger);
     const FingerPosture at_home = PostureAt(hand, finger, AnglesOf(hand, finger, estimate.q));
     const double reserve = MotionReserve(hand, finger, at_home, estimate.p_WO, axis_W,
-                                         gait.limit_margin, 3.0, gait.reach);
+                                         gait.limit_margin, 3.0, control.reach);
     if (reserve < gait.step_rad) continue;
     ++tested;
     // The object turns nearly as far as the finger follows.
@@ -137,7 +137,7 @@ TEST_F(LandingPlanTest, AFingerAtTheEndOfItsWayDoesNotStay) {
       q[joints[k]] = at_end.q[static_cast<Eigen::Index>(k)];
     estimate = TouchingEstimate(hand, q);
     const double rest = MotionReserve(hand, finger, at_end, estimate.p_WO, axis_W,
-                                      gait.limit_margin, 3.0, gait.reach);
+                                      gait.limit_margin, 3.0, control.reach);
     ASSERT_LT(rest, 0.19);
     ASSERT_GT(rest, 0.06);  // a whole step of what the gait counts on
     // Only where it stands the object has been felt.

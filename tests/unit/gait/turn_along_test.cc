@@ -37,7 +37,7 @@ struct TurnAlongTest : HeldTick {
     for (int i : fingers) {
       const FingerPosture now = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
       least = std::min(least, SureReserve(hand, i, now, estimate.p_WO, kAxis_W, gait.limit_margin,
-                                          10.0, gait.reach));
+                                          10.0, control.reach));
     }
     return least;
   }

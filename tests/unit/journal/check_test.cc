@@ -49,6 +49,12 @@ TEST(Check, TakesEveryModelOfOurs) {
   }
 }
 
+TEST(Check, ACapsuleOfAFormerVersionIsNamed) {
+  const std::string refusal =
+      Refusal([](Json& json) { json["/model/object/kind"_json_pointer] = 2; });
+  EXPECT_NE(refusal.find("capsule"), std::string::npos) << refusal;
+}
+
 struct Spoilt {
   const char* where;  ///< a JSON pointer to a number
   std::vector<double> values;
