@@ -89,8 +89,11 @@ FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q
   posture.along_W = (posture.p_WF - X_WL.translation()).normalized();
   posture.tip = BoneOf(hand.links[model.tip_link], X_WL);
   posture.J = FingerJacobian::Zero(3, static_cast<Eigen::Index>(model.joints.size()));
-  for (const Axis& axis : axes)
+  posture.J_w = posture.J;
+  for (const Axis& axis : axes) {
     posture.J.col(axis.column) += axis.ratio * axis.axis_W.cross(posture.p_WF - axis.p_WJ);
+    posture.J_w.col(axis.column) += axis.ratio * axis.axis_W;
+  }
   return posture;
 }
 

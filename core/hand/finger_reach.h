@@ -22,6 +22,7 @@ struct FingerPosture {
   Vector3d along_W = Vector3d::UnitZ();  ///< of the tip link, towards the tip
   Bone tip, middle;                      ///< the last two links; radius 0 for one without a capsule
   FingerJacobian J;                      ///< of the fingertip centre
+  FingerJacobian J_w;                    ///< how the tip link turns [rad/s per rad/s]
 };
 
 /// All joints between palm and tip link, coupled ones too, root to tip.
