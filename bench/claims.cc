@@ -258,7 +258,7 @@ void PrintReach(const Session& session, const Options& o, const Reach& reach, st
   const auto least = std::ranges::min_element(reach.allowed.alone, {}, &RollingEnd::angle);
   std::fprintf(stderr,
                "  seed %llu  rolling allows %.1f deg (%s), off by %.0f mm and %.0f deg %.1f deg "
-               "(%s), in no way more than %.1f deg  reached %.1f of %.3g deg\n",
+               "(%s), every finger by itself at least %.1f deg  reached %.1f of %.3g deg\n",
                static_cast<unsigned long long>(seed), reach.strict.angle / kDegree,
                joint(reach.strict), kPositionBound_mm, kAngleBound_deg,
                reach.allowed.angle / kDegree, joint(reach.allowed), least->angle / kDegree,

@@ -77,13 +77,15 @@ class Rolling {
   }
   /// The joint that ends it, or -1.
   int Step(int step, const Push& push, FingerPosture* posture) const {
-    const double share = 1.0 / kSteps;
-    const Vector3d p_WO = ball_.p_WO + way_.shift_W * share * step;
+    // It shifts and turns aside first.
+    const double before = std::min(1.0, static_cast<double>(step) / kStepsPerSegment);
+    const double off = before < 1 ? 1.0 / kStepsPerSegment : 0.0;
+    const Vector3d p_WO = ball_.p_WO + before * way_.shift_W;
     const Vector3d core = Core(*posture, p_WO);
     const Vector3d out = core - p_WO, n = out.normalized();
     const Vector3d r = ball_.radius * n;  // the contact, from the ball's centre
-    const Vector3d turn = share * (way_.angle * way_.axis_W + way_.aside_W);
-    const Vector3d dp = share * way_.shift_W + turn.cross(r) + (distance_ - out.norm()) * n;
+    const Vector3d turn = way_.angle / kSteps * way_.axis_W + off * way_.aside_W;
+    const Vector3d dp = off * way_.shift_W + turn.cross(r) + (distance_ - out.norm()) * n;
     FingerJacobian J = posture->J;
     for (Eigen::Index k = 0; k < J.cols(); ++k)
       J.col(k) += posture->J_w.col(k).cross(p_WO + r - posture->p_WF);

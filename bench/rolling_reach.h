@@ -15,13 +15,13 @@ struct Ball {
   double radius = 0;                 ///< [m]
 };
 
-/// Way of a ball: it turns by `angle` about `axis_W` (unit, through its centre); in proportion its
-/// centre shifts and it turns aside.
+/// Way of a ball: it turns by `angle` about `axis_W` (unit, through its centre); in the first
+/// 1 / kRollingSegments of the way its centre shifts and it turns aside, too.
 struct BallWay {
   Vector3d axis_W = Vector3d::UnitZ();
   double angle = 0;                     ///< [rad]
-  Vector3d shift_W = Vector3d::Zero();  ///< at its end [m]
-  Vector3d aside_W = Vector3d::Zero();  ///< at its end, rotation vector [rad]
+  Vector3d shift_W = Vector3d::Zero();  ///< [m]
+  Vector3d aside_W = Vector3d::Zero();  ///< rotation vector [rad]
 };
 
 struct RollingEnd {
@@ -37,7 +37,7 @@ RollingEnd FarthestRolling(const HandModel& hand, int finger, const JointVector&
                            const Ball& ball, const BallWay& way);
 inline constexpr int kRollingSegments = 5;
 
-/// How far the ball may be off the wanted turn at its end.
+/// How far the ball may be off the wanted turn.
 struct Allowance {
   double shift = 0;  ///< of the centre [m]
   double aside = 0;  ///< about axes across the wanted one [rad]

@@ -90,12 +90,11 @@ TEST(RollingReach, OfAllFingersIsThatOfTheShortestOnTheBestWay) {
   EXPECT_EQ(reach.joint, 0);
   ASSERT_EQ(reach.alone.size(), 2u);
   EXPECT_DOUBLE_EQ(reach.alone[1].angle, alone);
-  // A ball whose centre may move by d along the motion of the tip: R a + d = (R + r) way, in which
-  // d is at most the 3 mm allowed at the end, in proportion to what was turned.
+  // A ball whose centre may move by d along the way of the tip gains d of it: R a + d = (R + r)
+  // way. The directions looked at are 45 degrees apart.
   const RollingReach shifted =
       FarthestTurn(hand, {0}, q, kTheBall, Vector3d::UnitZ(), 1.5, {.shift = 0.003});
-  EXPECT_GT(shifted.angle, alone + 0.03);
-  EXPECT_LT(shifted.angle, alone + 0.003 / kBall + kTolerance);
+  EXPECT_NEAR(shifted.angle, alone + 0.003 / kBall, kTolerance);
 }
 
 }  // namespace
