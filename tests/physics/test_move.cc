@@ -90,8 +90,8 @@ TEST(Move, EndsAtItsLimitWithItsNameAndGoesOnHolding) {
   }
 }
 
-// From these starts a finger comes to its limit of abduction on the way; tips that only roll would
-// end the first three at 18 to 22 degrees, whatever the controller did (`claims move --reach`).
+// From these starts tips that only roll would end the turn after 8 to 13 degrees at a limit of
+// abduction, whatever the controller did (`claims move --reach`).
 TEST(Move, AFingerAtItsLimitSlidesBackWhileTheOthersHold) {
   for (const std::uint64_t seed : {105, 109, 113, 112}) {
     SessionRun run(seed);
