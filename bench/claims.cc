@@ -4,7 +4,9 @@
 //   claims objects   [--seeds N] [--first S] [--seconds T]   spheres of 45, 50, 60 mm and the egg,
 //                    or those of --object A,B,... (names or .urdf files) [--inertia-from-shape]
 //   claims move      [--seeds N] [--first S] [--angle DEG] [--offset MM] [--axis X,Y,Z | all]
-//                    one motion about and along the axis, without a regrasp
+//                    one motion about and along the axis, without a regrasp; --reach: for each
+//                    start, the angle that geometry allows a ball on which all fingertips roll
+//                    (bench/rolling_reach.h), beside what was reached
 //   claims repeat    [--seconds T]                            state hash of the same run, twice
 // Common: --hand NAME|FILE --noise PRESET --object NAME --tilt DEG (of the palm) --set NAME=VALUE
 // (repeatable)
@@ -26,6 +28,7 @@
 #include <vector>
 
 #include "bench/children.h"
+#include "bench/rolling_reach.h"
 #include "bench/settings.h"
 #include "bench/trial.h"
 #include "core/hand/scenario.h"
@@ -41,11 +44,12 @@ struct Options {
   std::uint64_t first = 1;
   double seconds = 60, tilt = -1, angle = 0, offset_mm = 0;
   std::string axis = "0,0,-1";
-  bool exact = false, rows = false, inertia_from_shape = false;
+  bool exact = false, rows = false, reach = false, inertia_from_shape = false;
   std::vector<ParameterSetting> set;
 };
 
-constexpr double kFailed = -1;
+constexpr double kFailed = -1, kDegree = M_PI / 180;
+constexpr double kPositionBound_mm = 4, kAngleBound_deg = 5;  // within which a motion counts
 
 SessionConfig MakeConfig(const Options& o, std::uint64_t seed, const std::string& object) {
   SessionConfig config;
@@ -227,11 +231,46 @@ int NearestToLimit(const Session& session, int finger) {
   return nearest;
 }
 
+/// --reach: how far geometry lets the ball turn from where the session holds it.
+struct Reach {
+  RollingReach strict;   ///< straight about the axis through its resting centre
+  RollingReach allowed;  ///< as far off that as a motion that counts may be
+};
+
+Reach ReachOf(const Session& session, const Options& o, const Vector3d& axis) {
+  std::vector<int> fingers;
+  for (const ObjectContact& c : session.truth().contacts)
+    if (c.finger >= 0 && std::ranges::find(fingers, c.finger) == fingers.end())
+      fingers.push_back(c.finger);
+  const auto farthest = [&](const Allowance& allowance) {
+    return FarthestTurn(session.config().model.hand, fingers, session.truth().q,
+                        {session.truth().p_WO, session.config().model.object.radius}, axis,
+                        o.angle * kDegree, allowance);
+  };
+  return {farthest({}), farthest({kPositionBound_mm * 1e-3, kAngleBound_deg * kDegree})};
+}
+
+void PrintReach(const Session& session, const Options& o, const Reach& reach, std::uint64_t seed,
+                double reached_deg) {
+  const auto joint = [&](const RollingReach& r) {
+    return r.joint < 0 ? "none" : session.config().model.hand.joints[r.joint].name.c_str();
+  };
+  const auto least = std::ranges::min_element(reach.allowed.alone, {}, &RollingEnd::angle);
+  std::fprintf(stderr,
+               "  seed %llu  rolling allows %.1f deg (%s), off by %.0f mm and %.0f deg %.1f deg "
+               "(%s), every finger by itself at least %.1f deg  reached %.1f of %.3g deg\n",
+               static_cast<unsigned long long>(seed), reach.strict.angle / kDegree,
+               joint(reach.strict), kPositionBound_mm, kAngleBound_deg,
+               reach.allowed.angle / kDegree, joint(reach.allowed), least->angle / kDegree,
+               reached_deg, o.angle);
+}
+
 /// {end, finger, joint nearest to its limit, angle error deg, position error at the end mm, largest
 /// on the way mm, still held a second later, share of the way, largest angle error on the way deg}.
 /// Errors are against what was wanted and, on the way, against the reference.
 Row MoveTrial(Session& session, const Options& o, const Vector3d& axis, std::uint64_t seed) {
   if (!GraspObject(session)) return {kFailed};
+  const Reach reach = o.reach ? ReachOf(session, o, axis) : Reach();
   Command c;
   c.type = CommandType::kMove;
   c.offset_W = o.offset_mm * 1e-3 * axis;
@@ -256,6 +295,7 @@ Row MoveTrial(Session& session, const Options& o, const Vector3d& axis, std::uin
                  joint < 0 ? "" : session.config().model.hand.joints[joint].name.c_str(),
                  100 * along, angle_error, position_error, r.max_position_error_m * 1e3,
                  r.max_rotation_error_rad * 180 / M_PI, held ? "held" : "NOT HELD", job.error);
+  if (o.reach) PrintReach(session, o, reach, seed, along * o.angle);
   return {static_cast<double>(r.end),
           static_cast<double>(r.end_finger),
           static_cast<double>(joint),
@@ -272,7 +312,13 @@ int Move(const Options& o) {
     std::fprintf(stderr, "claims: move wants --angle or --offset\n");
     return 2;
   }
-  const HandModel hand = MakeConfig(o, 1, o.object).model.hand;
+  const LoadedScenario model = MakeConfig(o, 1, o.object).model;
+  if (o.reach &&
+      (model.object.kind != ObjectModel::Kind::kSphere || o.angle <= 0 || o.offset_mm != 0)) {
+    std::fprintf(stderr, "claims: --reach wants a ball, --angle above 0 and no --offset\n");
+    return 2;
+  }
+  const HandModel& hand = model.hand;
   for (const auto& [label, axis] : Axes(o)) {
     const auto rows = Parallel(o.seeds, o.jobs, [&, a = axis](int k) {
       Session session(MakeConfig(o, o.first + k, o.object));
@@ -292,7 +338,7 @@ int Move(const Options& o) {
       const auto end = static_cast<MoveEnd>(static_cast<int>(r[0]));
       if (end == MoveEnd::kReached) {
         ++reached;
-        within += r[3] < 5 && std::max(r[4], r[5]) < 4;
+        within += r[3] < kAngleBound_deg && std::max(r[4], r[5]) < kPositionBound_mm;
         angle.push_back(r[3]);
         position.push_back(r[4]);
         continue;
@@ -373,6 +419,8 @@ int Main(int argc, char** argv) {
       o.exact = true;
     else if (a == "--rows")
       o.rows = true;
+    else if (a == "--reach")
+      o.reach = true;
     else if (a == "--inertia-from-shape")
       o.inertia_from_shape = true;
     else if (a == "--set")

@@ -151,8 +151,8 @@ struct GaitParameters {
   double limit_rate =
       0.3;  ///< a joint slower than this does not run into its limit [rad per rad of the object]
   double limit_rate_shift = 12.0;  ///< the same for a shift [rad/m]: equal at 25 mm from the axis
-  double yielding_cap = 2.0;       ///< force of a finger that shall slip, at most, in slide_force
-  double rest_s = 0.4;             ///< move: rest until the object has caught up [s]
+  double yielding_cap = 2.0;  ///< force of a finger that found no room, at most, in slide_force
+  double rest_s = 0.4;        ///< move: rest until the object has caught up [s]
   // Hop over the felt surface (hop.h).
   double there_on_object = 0.0005;  ///< a target on the object is reached this near [m]
   double air_limit_s = 1.0;         ///< the finger comes down anyway after so long

@@ -66,12 +66,31 @@ bool LocalManipulation::AtJointLimit(const ControlTick& tick, int finger,
   return false;
 }
 
+Vector3d LocalManipulation::ContactRate(const ControlTick& tick, int finger) const {
+  return per_path_.w_W.cross(tick.finger(finger).p_WC - tick.estimate.p_WO) + per_path_.v_W;
+}
+
+bool LocalManipulation::HasRoom(const ControlTick& tick, int finger) const {
+  const FingerEstimate& f = tick.finger(finger);
+  const Vector3d along = DampedInverse(f.J) * ContactRate(tick, finger);
+  const auto& joints = tick.hand.fingers[finger].joints;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Joint& joint = tick.hand.joints[joints[k]];
+    const double q = tick.estimate.q[joints[k]];
+    const double way = f.J.col(static_cast<Eigen::Index>(k)).dot(along) * (length_ - travelled_);
+    if ((way > 0 && q + way > joint.upper - tick.gait.limit_margin) ||
+        (way < 0 && q + way < joint.lower + tick.gait.limit_margin))
+      return false;
+  }
+  return true;
+}
+
 LocalManipulation::End LocalManipulation::FindEnd(const ControlTick& tick, const Home& home) {
   limited_finger_ = -1;
   for (int i : tick.grasp) {
     const FingerEstimate& f = tick.finger(i);
     end_finger_ = i;
-    const Vector3d v = per_path_.w_W.cross(f.p_WC - tick.estimate.p_WO) + per_path_.v_W;
+    const Vector3d v = ContactRate(tick, i);
     if (AtJointLimit(tick, i, v)) {
       limited_finger_ = i;
       at_limit_.add(i);

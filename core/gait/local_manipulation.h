@@ -48,6 +48,13 @@ class LocalManipulation {
   int end_finger() const { return end_finger_; }  ///< whose limit it was, or -1
   /// The fingers that have had a joint at a limit against which they would have moved.
   FingerSet at_limit() const { return at_limit_; }
+  /// Whether the joints of `finger`, at their present rates, stay off their limits to the end of
+  /// the path.
+  bool HasRoom(const ControlTick& tick, int finger) const;
+  /// The finger is off its limit again.
+  void Freed(int finger) { at_limit_.remove(finger); }
+  /// Velocity of the finger's contact per path, as it goes with the object [m].
+  Vector3d ContactRate(const ControlTick& tick, int finger) const;
   double length() const { return length_; }        ///< of the path [rad, or m for a shift]
   double travelled() const { return travelled_; }  ///< by the reference since Start, same unit
   double speed() const { return speed_; }          ///< along the path [1/s]

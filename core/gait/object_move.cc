@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace regrasp {
-namespace {}  // namespace
 
 void ObjectMove::Start(const Request& request, const ControlTick& tick,
                        const ObjectWrench& wrench) {
@@ -24,25 +23,44 @@ void ObjectMove::Start(const Request& request, const ControlTick& tick,
 
 int ObjectMove::YieldingFinger(const ControlTick& tick) const {
   const auto& margins = tick.margins.without;
+  const auto may = [&](int i) {
+    return tick.grasp.contains(i) && margins[i] >= tick.gait.margin_min;
+  };
+  const FingerSet at_limit = manipulation_.at_limit();
+  if (at_limit.contains(yielding_) && may(yielding_) && slides(tick)) return yielding_;
   int yielding = -1;
-  for (int i : manipulation_.at_limit())
-    if (tick.grasp.contains(i) && margins[i] >= tick.gait.margin_min &&
-        (yielding < 0 || margins[i] > margins[yielding]))
-      yielding = i;
+  for (int i : at_limit)
+    if (may(i) && (yielding < 0 || margins[i] > margins[yielding])) yielding = i;
   return yielding;
+}
+
+void ObjectMove::Yield(const ControlTick& tick, FingerTask* task) {
+  const GaitParameters& parameters = tick.gait;
+  ++yield_ticks_;
+  if (slides(tick) && manipulation_.end() == LocalManipulation::End::kNone) {
+    const Vector3d along =
+        TangentPart(manipulation_.ContactRate(tick, yielding_), tick.finger(yielding_).normal_W);
+    task->mode = FingerMode::kSlide;
+    task->force = parameters.slide_force;
+    task->v_W = -parameters.slide_speed * along.normalized();
+    return;
+  }
+  task->cap = std::min(task->cap, parameters.yielding_cap * parameters.slide_force);
+  task->grip = parameters.slide_force;
 }
 
 ObjectMotion ObjectMove::Update(const ControlTick& tick, HybridController* controller,
                                 FingerTasks* tasks) {
+  if (yielding_ >= 0 && manipulation_.HasRoom(tick, yielding_)) manipulation_.Freed(yielding_);
   const int yielding = YieldingFinger(tick);
+  if (yielding != yielding_) yield_ticks_ = 0;
+  yielding_ = yielding;
   for (int i : tick.grasp) {
     FingerTask& task = (*tasks)[i];
     task.mode = FingerMode::kHold;
     task.cap = tick.control.max_normal_force;
     task.grip = tick.gait.grip_force;
-    if (i != yielding) continue;
-    task.cap = std::min(task.cap, tick.gait.yielding_cap * tick.gait.slide_force);
-    task.grip = tick.gait.slide_force;
+    if (i == yielding_) Yield(tick, &task);
   }
 
   using End = LocalManipulation::End;

@@ -1,9 +1,11 @@
 #pragma once
 
 /// One local manipulation on its own: all fingers hold, and the object moves a little along and
-/// about any axis without a regrasp, as far as the fingers reach. A finger that a joint limit
-/// has held up presses lightly from then on, so that it rolls and slips, while the grasp without it
-/// has load margin enough (gait.margin_min). One finger at a time: the margin counts on the others.
+/// about any axis without a regrasp, as far as the fingers reach. A finger that a joint limit has
+/// held up yields, while the grasp without it has load margin enough (gait.margin_min): it slides
+/// back over the surface, against the motion, until its joints have room for the rest of the way.
+/// One that has found no room in gait.slide_limit_s presses lightly, so that it rolls and slips.
+/// One finger at a time: the margin counts on the others.
 
 #include "core/gait/local_manipulation.h"
 
@@ -39,18 +41,28 @@ class ObjectMove {
     v("stop", stop_);
     v("manipulation", manipulation_);
     v("home", home_);
+    v("yielding", yielding_, v.Finger());
+    v("yield_ticks", yield_ticks_);
     v("rest_ticks", rest_ticks_);
   }
 
  private:
-  /// Of the fingers at a limit the one that the grasp can best do without, or -1.
+  /// The finger that yields until it has room, else of those at a limit the one that the grasp can
+  /// best do without, or -1.
   int YieldingFinger(const ControlTick& tick) const;
+  /// The task of the finger that yields.
+  void Yield(const ControlTick& tick, FingerTask* task);
+  bool slides(const ControlTick& tick) const {
+    return yield_ticks_ * tick.dt < tick.gait.slide_limit_s;
+  }
 
   bool active_ = false;
   bool stop_ = false;
   LocalManipulation manipulation_;
   Home home_;
-  int rest_ticks_ = 0;  // since the end of the motion
+  int yielding_ = -1;    // finger
+  int yield_ticks_ = 0;  // since it began to yield
+  int rest_ticks_ = 0;   // since the end of the motion
 };
 
 }  // namespace regrasp

@@ -90,6 +90,32 @@ TEST(Move, EndsAtItsLimitWithItsNameAndGoesOnHolding) {
   }
 }
 
+// From these starts tips that only roll would end the turn after 8 to 13 degrees at a limit of
+// abduction, whatever the controller did (`claims move --reach`).
+TEST(Move, AFingerAtItsLimitSlidesBackWhileTheOthersHold) {
+  for (const std::uint64_t seed : {105, 109, 113, 112}) {
+    SessionRun run(seed);
+    ASSERT_TRUE(run.Grasp());
+    Move(&run, Vector3d::Zero(), {0, 30 * kDegree, 0});
+    int slid = 0;
+    for (int k = 0; k < 10000 && run.session.job_running(); ++k) {
+      run.Tick();
+      const Frame frame = run.Snapshot();
+      const auto slides = std::ranges::count(frame.fingers, FingerRole::kMove, &FingerFrame::role);
+      EXPECT_LE(slides, 1);
+      slid += slides > 0;
+    }
+    const MoveResult r = run.Job().move;
+    EXPECT_TRUE(r.reached) << seed << ": " << Name(r.end);
+    EXPECT_LT(AngleError(r), kAngleError) << seed;
+    EXPECT_LT(r.achieved_offset_m.norm(), kPositionError) << seed;
+    EXPECT_LT(r.max_position_error_m, kPositionError) << seed;
+    EXPECT_GT(slid, 0) << seed;
+    run.Ticks(1000);
+    EXPECT_EQ(run.session.state(), SessionState::kHolding) << seed;
+  }
+}
+
 TEST(Move, AShiftIsJudgedByTheFirstPlaceOfTheContacts) {
   SessionRun run;
   ASSERT_TRUE(run.Grasp());
