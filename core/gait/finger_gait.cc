@@ -108,7 +108,7 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
   }
   const Vector3d& centre = wrench.p_ref();
   if (recall) *recall += centre;
-  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, recall, centre, {}};
+  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, recall, centre, Vector3d::Zero()};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,

@@ -47,7 +47,7 @@ class Parameters(DaemonCase):
                             ("exploration.lambda", "0.123456789012345678")):
             self.expect(0, "param", "set", name, value)
         before = self.changed()
-        self.assertIn("11 parameters that differ from their defaults", self.expect(0, "param", "save", file).stdout)
+        self.assertIn("12 parameters that differ from their defaults", self.expect(0, "param", "save", file).stdout)
         self.assertEqual(self.expect(0, "param", "save", "-").stdout, file.read_text())
         self.expect(0, "param", "reset")
         self.expect(0, "param", "load", file)

@@ -134,7 +134,7 @@ TEST_F(ParameterRequests, WhatAPresetChangesIsListedAndNamesIt) {
   client->Result("param.set", {{"name", "gait.max_excursion"}, {"value", 0.02}});
   EXPECT_EQ(Get("gait.max_excursion")["source"], "set while running");
   const Names changed = Changed();
-  EXPECT_EQ(changed, (Names{"gait.along_speed", "gait.forgive", "gait.margin_min",
+  EXPECT_EQ(changed, (Names{"gait.along_speed", "gait.explore_s", "gait.forgive", "gait.margin_min",
                             "gait.max_excursion", "gait.mode", "gait.plan", "gait.preset"}));
   Names listed;
   const Json reset = client->Result("param.reset", {{"name", "gait.preset"}});
