@@ -182,8 +182,8 @@ class FingerGait {
   void StartPlan(int finger, double reach, const ControlTick& tick);
   void EndPlan(const ControlTick& tick);
   Regrasp::Request RequestOf(const GaitStep& step, int next, const ControlTick& tick) const;
-  /// Preferred normal force of those that hold: more while the opposing finger is away, without
-  /// which a push finds the least resistance [N].
+  /// Preferred normal force of those that hold: may be more while the opposing finger is away,
+  /// without which a push finds the least resistance [N].
   double Grip(const ControlTick& tick) const;
   /// Least load margin without the finger at which it may leave [N].
   double MarginNeeded(const ControlTick& tick, int finger) const;
