@@ -32,7 +32,7 @@ INSTEAD = {
 }
 # Measurements: the same program, as short as it can be.
 SHORTER = [(r"--seconds [\d.]+", "--seconds 1"), (r"--seeds \d+", "--seeds 1"), (r"--turns \d+", "--turns 0.1"), (r"(--seeds|-n) \d+", r"\1 1"),
-           (r"experiment rotation (?!.*--turns)", "experiment rotation --turns 0.1 "), (r"bench_socket$", "bench_socket 20"), (r"bench_watchers.*", "bench_watchers 1"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
+           (r"experiment rotation (?!.*--turns)", "experiment rotation --turns 0.1 "), (r"bench_socket$", "bench_socket 20"), (r"bench_creep$", "bench_creep --seconds 1"), (r"bench_watchers.*", "bench_watchers 1"), (r"bench_quality$", "bench_quality --benchmark_min_time=0.01")]
 
 
 def help_examples():
