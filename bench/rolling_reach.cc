@@ -26,7 +26,7 @@ class Rolling {
  public:
   Rolling(const HandModel& hand, int finger, const JointVector& q, const Ball& ball,
           const BallWay& way)
-      : hand_(hand), finger_(finger), ball_(ball), way_(way) {
+      : hand_(hand), finger_(finger), q_(q), ball_(ball), way_(way) {
     start_ = PostureAt(hand, finger, AnglesOf(hand, finger, q));
     distance_ = (Core(start_, ball.p_WO) - ball.p_WO).norm();
     const auto joints = static_cast<Eigen::Index>(hand.fingers[finger].joints.size());
@@ -86,14 +86,22 @@ class Rolling {
     const Vector3d r = ball_.radius * n;  // the contact, from the ball's centre
     const Vector3d turn = way_.angle / kSteps * way_.axis_W + off * way_.aside_W;
     const Vector3d dp = off * way_.shift_W + turn.cross(r) + (distance_ - out.norm()) * n;
-    FingerJacobian J = posture->J;
-    for (Eigen::Index k = 0; k < J.cols(); ++k)
-      J.col(k) += posture->J_w.col(k).cross(p_WO + r - posture->p_WF);
+    const FingerJacobian J = ContactJacobian(*posture, p_WO + r);
     FingerVector dq;
     if (!Solve(J, posture->q, dp, push, kNone, &dq) && !Solve(J, posture->q, dp, {}, kNone, &dq))
       return Binding(J, posture->q, dp);
     *posture = PostureAt(hand_, finger_, posture->q + dq);
     return -1;
+  }
+  /// How the joints move the point `p_WC` of the tip link [m/rad].
+  FingerJacobian ContactJacobian(const FingerPosture& posture, const Vector3d& p_WC) const {
+    JointVector q = q_;
+    const auto& joints = hand_.fingers[finger_].joints;
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      q[joints[k]] = posture.q[static_cast<Eigen::Index>(k)];
+    KinematicsData data;
+    ForwardKinematics(hand_, q, &data);
+    return PointJacobian(hand_, data, finger_, p_WC);
   }
   /// The joint without whose limit the step could be made.
   int Binding(const FingerJacobian& J, const FingerVector& q, const Vector3d& dp) const {
@@ -151,6 +159,7 @@ class Rolling {
 
   const HandModel& hand_;
   int finger_;
+  JointVector q_;  // of the whole hand where it begins [rad]
   Ball ball_;
   BallWay way_;
   FingerPosture start_;

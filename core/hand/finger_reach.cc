@@ -121,11 +121,8 @@ FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q
   if (!last.shapes.empty()) posture.tip = BonesOf(last.shapes.front(), X_WL)[0];
   posture.body = LargestOf(last, 1, X_WL);
   posture.J = FingerJacobian::Zero(3, static_cast<Eigen::Index>(model.joints.size()));
-  posture.J_w = posture.J;
-  for (const Axis& axis : axes) {
+  for (const Axis& axis : axes)
     posture.J.col(axis.column) += axis.ratio * axis.axis_W.cross(posture.p_WF - axis.p_WJ);
-    posture.J_w.col(axis.column) += axis.ratio * axis.axis_W;
-  }
   return posture;
 }
 

@@ -28,7 +28,6 @@ struct FingerPosture {
   Bone tip;                              ///< of the fingertip
   Bones body, middle;  ///< the largest other shape of its link, and that of the link before
   FingerJacobian J;    ///< of the fingertip centre
-  FingerJacobian J_w;  ///< how the tip link turns [rad/s per rad/s]
 };
 
 /// All joints between palm and tip link, coupled ones too, root to tip.
