@@ -185,10 +185,8 @@ ObjectMotion FingerGait::TurnMeanwhile(const ControlTick& tick, const ObjectWren
     return {};
   }
   double most = parameters.along_speed;
-  if (regrasps && regrasp_.explores()) {
-    const bool rubs = regrasp_.phase() == Regrasp::Phase::kSlide;  // the friction is felt at rest
-    most = rubs ? 0 : std::min(most, parameters.along_explore_speed);
-  }
+  if (regrasps && regrasp_.rubs()) most = 0;  // the friction is felt at rest
+  if (regrasps && regrasp_.explores()) most = std::min(most, parameters.along_explore_speed);
   if (request_.speed_rad_s > 0) most = std::min(most, request_.speed_rad_s);
   if (!request_.continuous) most = std::min(most, std::sqrt(2 * parameters.acceleration * left));
   const int away = finger();

@@ -72,7 +72,7 @@ struct GaitParameters {
   double skip_distance = 0.0012;  ///< a finger this near to its target stays [m]
   // Leaving and coming back.
   double grip_force = 2.0;     ///< preferred normal force of a holding finger, in `move` too [N]
-  double opposing_grip = 2.0;  ///< the same while the opposing finger regrasps [N]
+  double opposing_grip = 0;    ///< of the others while the opposing finger regrasps, if larger [N]
   double transfer_s = 0.03;    ///< load transfer before a finger leaves, and after it is back [s]
   double hop_force = 0.05;     ///< its force when it leaves [N]
   double lift_height = 0.003;  ///< along the outward normal [m]

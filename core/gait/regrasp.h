@@ -71,12 +71,15 @@ class Regrasp {
   const Request& request() const { return request_; }
   int finger() const { return request_.slide.finger; }
   Phase phase() const;
-  /// Slides with its exploring force, to explore or to feel the friction.
+  /// Slides before it hops, to feel the friction.
+  bool rubs() const {
+    return slide_.phase() == GuidedSlide::Phase::kAway && request_.hop &&
+           hop_.phase() == Hop::Phase::kIdle;
+  }
+  /// Slides with its exploring force.
   bool explores() const {
-    return (slide_.phase() == GuidedSlide::Phase::kAway && request_.hop &&
-            hop_.phase() == Hop::Phase::kIdle) ||
-           (slide_.phase() >= GuidedSlide::Phase::kSettle &&
-            slide_.phase() <= GuidedSlide::Phase::kReturn);
+    return slide_.phase() >= GuidedSlide::Phase::kSettle &&
+           slide_.phase() <= GuidedSlide::Phase::kReturn;
   }
   bool active() const { return slide_.active(); }
   bool aborted() const { return aborted_; }
