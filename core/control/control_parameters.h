@@ -66,6 +66,7 @@ struct ControlParameters {
   double feel_memory_s = 2.0;   ///< the mean is over about so much of the last sliding
   double feel_enough_s = 0.14;  ///< ... which is known after so much
   double feel_least = 0.1;      ///< coefficient counted on, at least
+  double feel_most = 0.7;       ///< ... and at most, however rough it feels
   // Grasping.
   double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]
   double close_force = 0.15;        ///< a finger that has touched waits with this force [N]

@@ -45,9 +45,8 @@ void FeltFriction::Update(const HandModel& hand, const Estimate& estimate, const
 }
 
 double FeltFriction::Counted(double share, const ControlParameters& parameters) const {
-  constexpr double kMost = 1.0;  // what no pair of dry surfaces is expected to exceed
-  return known(parameters) ? std::clamp(share * mean_, parameters.feel_least, kMost)
-                           : parameters.friction_estimate;
+  if (!known(parameters)) return parameters.friction_estimate;
+  return std::max(parameters.feel_least, std::min(parameters.feel_most, share * mean_));
 }
 
 }  // namespace regrasp

@@ -24,7 +24,9 @@ class FeltFriction {
   }
   double felt() const { return mean_; }      ///< mean of f_v / f_n; 0: nothing has slid
   double felt_s() const { return felt_s_; }  ///< time over which it was felt [s]
-  /// What to count on: `share` of what was felt, friction_estimate until it is known.
+  /// What to count on: `share` of what was felt, from feel_least to feel_most; friction_estimate
+  /// until it is known. The more is counted on, the nearer to slipping the fingers hold, and what
+  /// is felt by a few tips on a few spots may be too much.
   double Counted(double share, const ControlParameters& parameters) const;
   template <typename V>
   void Fields(V& v) {

@@ -232,6 +232,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.feel_force", "N", 0.01, 5, "... pressed on with no less than this force.", kOurs, [](P& p) { return &p.control.feel_force; }),
   Row("control.feel_memory_s", "s", 0.01, 100, "It is the mean over about so much of the last sliding.", kOurs, [](P& p) { return &p.control.feel_memory_s; }),
   Row("control.feel_enough_s", "s", 0.001, 100, "It counts once it was felt for so long.", kOurs, [](P& p) { return &p.control.feel_enough_s; }),
+  Row("control.feel_most", "", 0.05, 1, "Largest coefficient that is counted on, however rough the object feels.", kMeasured, [](P& p) { return &p.control.feel_most; }),
   Row("control.feel_least", "", 0.05, 1, "Least coefficient that is counted on after that.", kOurs, [](P& p) { return &p.control.feel_least; }),
   Row("control.stability_hysteresis", "", 1, 2, "Criterion switched: stability stays the objective up to so much of its threshold.", kOurs, [](P& p) { return &p.control.stability_hysteresis; }),
   Row("exploration.wall_return", "1/s", 0, 100, "Speed with which a finger leaves what lies behind a wall, per depth.", kOurs, [](P& p) { return &p.exploration.wall_return; }),

@@ -77,6 +77,23 @@ TEST(FeltFriction, CountsOnWhatItWasToldUntilFingersHaveSlidForLongEnough) {
   EXPECT_EQ(friction.Counted(0.85, ControlParameters()), ControlParameters().friction_estimate);
 }
 
+// A few tips on a few spots feel too much at times, and what is counted on brings the fingers so
+// much nearer to slipping.
+TEST(FeltFriction, CountsOnNoMoreThanTheMostHoweverRoughItFeels) {
+  FeltFriction friction;
+  Scene(0.01, 0.36).Run(0.3, &friction);
+  ASSERT_NEAR(friction.felt(), 1.2, 0.02);
+  ControlParameters parameters;
+  EXPECT_EQ(friction.Counted(0.85, parameters), parameters.feel_most);
+  parameters.feel_most = 1;
+  EXPECT_EQ(friction.Counted(0.85, parameters), 1);
+  EXPECT_NEAR(friction.Counted(0.5, parameters), 0.6, 0.01);
+  // The least wins where they contradict each other.
+  parameters.feel_least = 0.8;
+  parameters.feel_most = 0.4;
+  EXPECT_EQ(friction.Counted(0.85, parameters), 0.8);
+}
+
 // As of a finger that another one holds back: no friction is negative.
 TEST(FeltFriction, AMeanThatCannotBeIsNotBelievedUntilMoreIsFelt) {
   FeltFriction friction;
