@@ -135,7 +135,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.explore_unknown", "rad", 0, 3.2, "Exploring where unknown: from this angle between the landing and what was felt on.", kOurs, [](P& p) { return &p.gait.explore_unknown; }),
   Row("gait.explore_s", "s", 0.05, 20, "Exploring: longest run of Algorithm 1 per regrasp.", kMeasured, [](P& p) { return &p.gait.explore_s; }),
   Row("gait.grip_force", "N", 0.1, 10, "Preferred normal force of a holding finger during rotate and move.", kMeasured, [](P& p) { return &p.gait.grip_force; }),
-  Row("gait.opposing_grip", "N", 0, 10, "Planned landings: gait.grip_force of the others while the opposing finger regrasps, if larger; 3 N for pushes about -z.", kMeasured, [](P& p) { return &p.gait.opposing_grip; }),
+  Row("gait.opposing_grip", "N", 0, 10, "Planned landings: gait.grip_force of the others while the opposing finger regrasps, if larger; 3 N against pushes, but slippery objects suffer.", kMeasured, [](P& p) { return &p.gait.opposing_grip; }),
   Row("gait.hop", "A finger hops to its target, instead of sliding there.", kOurs, [](P& p) { return &p.gait.hop; }),
   Row("gait.hop_force", "N", 0.01, 1, "Hop: normal force at which the fingertip leaves the surface.", kMeasured, [](P& p) { return &p.gait.hop_force; }),
   Row("gait.lag_position", "m", 0.0002, 0.05, "The turning reference waits while the object is this far behind.", kOurs, [](P& p) { return &p.gait.lag_position; }),
