@@ -10,7 +10,7 @@ import random
 import select
 import unittest
 
-from harness import DaemonCase, Wire
+from harness import HANG_S, DaemonCase, Wire
 
 REQUESTS = int(os.environ.get("REGRASP_REQUESTS", "3000"))
 SEED = int(os.environ.get("REGRASP_SEED_OF_REQUESTS", "1"))
@@ -22,6 +22,8 @@ class Client(Wire):
     def __init__(self, path):
         super().__init__(path)
         self.open = {}  # id -> method, in the order of asking
+        self.rest = b""  # of what came, the line that has not ended
+        self.answer = None  # to the last request
 
     def send(self, requests, batch=False):
         messages = []
@@ -47,22 +49,33 @@ class Client(Wire):
         if self.open[number] not in waits:
             assert not earlier, f"{number} is answered before {earlier}"
         del self.open[number]
+        if number == self.last:
+            self.answer = answer
 
-    def read_all(self):
-        while self.open:
-            line = self.lines.readline()
-            assert line, f"the connection ended with {self.open} open"
+    def read(self):
+        """What is there."""
+        data = self.socket.recv(1 << 16)
+        assert data, f"the connection ended with {self.open} open"
+        *lines, self.rest = (self.rest + data).split(b"\n")
+        for line in lines:
             message = json.loads(line)
             for answer in message if isinstance(message, list) else [message]:
                 self.take(answer)
 
+    def read_all(self, others=()):
+        """Until everything is answered. Others read meanwhile: who reads nothing for 10 s is disconnected, and this may take longer."""
+        clients = {client.socket: client for client in (self, *others)}
+        while self.open:
+            ready = select.select(clients, [], [], HANG_S)[0]
+            assert ready, f"no answer to {self.open}"
+            for each in ready:
+                clients[each].read()
+
     def ask(self, method, **params):
         self.send([(method, params)])
-        number, answer = self.last, None
-        while number in self.open:
-            answer = json.loads(self.lines.readline())
-            self.take(answer)
-        return answer
+        while self.last in self.open:
+            self.read()
+        return self.answer
 
 
 
@@ -99,9 +112,9 @@ class Answers(DaemonCase):
                 clients.remove(client)
                 clients.append(Client(self.socket))
             elif r.random() < 0.5:
-                client.read_all()
+                client.read_all(clients)
         for client in clients:
-            client.read_all()
+            client.read_all(clients)
         for client in clients[1:]:
             client.close()
         # Nobody who left is still here: every answer they waited for has been dropped or made.
@@ -142,7 +155,7 @@ class Answers(DaemonCase):
         client = Client(self.socket)
         client.send([("status", {})] * 20 + [("checkpoint.save", {"name": "last"}), ("shutdown", {})])
         client.read_all()
-        self.assertEqual(client.lines.read(), b"")
+        self.assertEqual(client.rest + client.socket.recv(1), b"")
         client.close()
 
 
