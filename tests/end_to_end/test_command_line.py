@@ -26,11 +26,22 @@ class Words(Case):
             (["watch", "qualty"], "qualty", "regrasp watch quality"),
             (["help", "explor"], "explor", "regrasp help explore"),
             (["grasp", "--wiat"], "--wiat", "--wait"),
+            (["grasp", "--sockt", "x"], "--sockt", "--socket"),
+            (["watch", "status", "--coulor", "never"], "--coulor", "--color"),
+            # What the wire calls the parameter.
+            (["move", "--offset", "0,0,5mm"], "--offset", "--by"),
+            (["move", "--ofset", "0,0,5mm"], "--ofset", "--by"),
+            (["move", "--rotation", "0,0,5"], "--rotation", "--turn"),
         ]:
             with self.subTest(words):
                 cause, hint = self.refused(2, *words)
                 self.assertIn(f"'{wrong}'", cause)
                 self.assertIn(nearest, hint)
+
+    def test_options_that_are_like_no_other_get_the_help_and_no_guess(self):
+        for words in (["explore", "ring", "--offset", "5mm"], ["move", "--shift", "0,0,5"], ["rotate", "--rate", "4"], ["push", "--weight", "1"]):
+            with self.subTest(words):
+                self.assertEqual(self.refused(2, *words)[1], "  try: regrasp help " + words[0])
 
     def test_incomplete_and_contradictory_words_are_usage_errors(self):
         for words in [[], ["noise"], ["job"], ["explore"], ["param", "set", "gravity"], ["explore", "ring", "extra"], ["--json", "--csv", "status"],
