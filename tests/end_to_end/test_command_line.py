@@ -67,6 +67,8 @@ class Words(Case):
                       ["watch", "status", "--rate", "0"], ["watch", "status", "--count", "0"]]:
             with self.subTest(words):
                 self.refused(2, *words)
+        self.assertIn("allowed are 0 to 2^53", self.refused(2, "explore", "ring", "--seed", "-1")[0])
+        self.assertIn("--max-cycles 2000000: allowed are 1 to 1000000", self.refused(2, "explore", "ring", "--max-cycles", "2000000")[0])
 
     def test_names_of_commands_may_be_arguments(self):
         # Each gets as far as looking for the daemon: the words were understood.
@@ -94,6 +96,7 @@ class Words(Case):
             self.assertEqual(text, self.expect(0, *command["words"].split(), "--help").stdout)
             for line in text.splitlines() + overview.splitlines():
                 self.assertLessEqual(len(line), 80, line)
+            self.assertNotRegex(text, r"\d[eE][+-]?\d", "a limit with an exponent")
 
 
 class Start(Case):
