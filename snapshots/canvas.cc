@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "core/protocol/plot_table.h"
+#include "snapshots/refused.h"
 
 namespace regrasp {
 namespace {
@@ -41,10 +42,7 @@ std::string CheckedSuffix(const std::string& path) {
 
 /// Checked: what a canvas of this size is drawn on.
 SheetSize SizeOf(const CanvasSize& size, const std::string& suffix, const std::string& path) {
-  if (size.width_px < 400 || size.width_px > 8000 || size.height_px < 300 || size.height_px > 8000)
-    throw std::runtime_error(
-        fmt::format("{}: picture size {}x{} px (allowed: 400x300 .. 8000x8000)", path,
-                    size.width_px, size.height_px));
+  CheckPictureSize(path, size.width_px, size.height_px);
   const double unit = size.logical_width < kLogicalWidth
                           ? size.width_px / size.logical_width
                           : std::min(size.width_px / kLogicalWidth, size.height_px / 1000.0);

@@ -6,18 +6,19 @@
 #include "snapshots/axes.h"
 #include "snapshots/measures.h"
 #include "snapshots/plots.h"
+#include "snapshots/refused.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
 namespace {
 
 /// The stretch that explores: from the first to the last frame in which a finger does. Throws
-/// std::runtime_error when none does.
+/// PictureRefused when none does.
 std::span<const Frame> Exploration(std::span<const Frame> frames, const std::string& label) {
   const auto explores = [](const Frame& frame) { return ExploringFinger(frame) >= 0; };
   const auto first = std::find_if(frames.begin(), frames.end(), explores);
   if (first == frames.end())
-    throw std::runtime_error(label + ": no finger explores, there is nothing to compare");
+    throw PictureRefused(label, "no finger explores, there is nothing to compare");
   const auto last = std::find_if(frames.rbegin(), frames.rend(), explores).base();
   return {first, last};
 }
@@ -88,7 +89,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     facts.push_back(FactsOfRun(c.frames, run, hand));
     curves.push_back(std::move(c));
   }
-  if (curves.empty()) throw std::runtime_error(path + ": nothing to draw: no runs were given");
+  if (curves.empty()) throw PictureRefused(path, "nothing to draw: no runs were given");
 
   Canvas canvas(SizeOf(options, 640), path);
   const double top =

@@ -9,6 +9,7 @@
 #include "snapshots/measures.h"
 #include "snapshots/object_view.h"
 #include "snapshots/plots.h"
+#include "snapshots/refused.h"
 #include "snapshots/sphere_fit.h"
 #include "snapshots/timeline.h"
 
@@ -206,7 +207,7 @@ void PlotContacts(std::span<const Frame> history, const HandModel& hand, const O
   Content content;
   content.cloud = Collect(frames, hand);
   if (content.cloud.points.empty())
-    throw std::runtime_error(path + ": nothing to draw: no finger held the object in these frames");
+    throw PictureRefused(path, "nothing to draw: no finger held the object in these frames");
   std::vector<Vector3d> points;
   for (const Contact& contact : content.cloud.points) points.push_back(contact.p_OC);
   if (felt != nullptr && felt->touched_cells() > 0) content.felt = JudgeFelt(*felt, object);

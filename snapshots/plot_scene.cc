@@ -6,6 +6,7 @@
 #include "core/hand/kinematics.h"
 #include "snapshots/axes.h"
 #include "snapshots/plots.h"
+#include "snapshots/refused.h"
 #include "snapshots/scene_view.h"
 #include "snapshots/timeline.h"
 
@@ -217,8 +218,7 @@ Pixels ScenePixels(const Frame& frame, const HandModel& hand, const ObjectModel&
 }
 
 void DrawScene(const PlotInput& input, const std::string& path) {
-  if (input.frames.empty())
-    throw std::runtime_error(path + ": nothing to draw: the history is empty");
+  if (input.frames.empty()) throw PictureRefused(path, "nothing to draw: the history is empty");
   PlotScene(input.frames.back(), input.hand, input.object, input.options, path);
 }
 

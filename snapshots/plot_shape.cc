@@ -6,6 +6,7 @@
 
 #include "snapshots/felt_picture.h"
 #include "snapshots/plots.h"
+#include "snapshots/refused.h"
 #include "snapshots/timeline.h"
 
 namespace regrasp {
@@ -60,7 +61,7 @@ void DrawTouches(Canvas* canvas, const ObjectView& view, const FeltSurface& felt
 void DrawShape(const PlotInput& input, const std::string& path) {
   const auto frames = Newest(input.frames, 0, path).last(1);
   if (!input.felt || input.felt->touched_cells() == 0)
-    throw std::runtime_error(path + ": nothing to draw: no finger has felt the object");
+    throw PictureRefused(path, "nothing to draw: no finger has felt the object");
   const FeltPicture picture = JudgeFelt(*input.felt, input.object);
 
   Canvas canvas(Lower(SizeOf(input.options, kNarrowHeight), kHeight), path);

@@ -7,9 +7,9 @@
 /// The input is what leaves a session, Frame and Event, oldest first and in one run: a picture
 /// never touches the simulator. All of them may be called from any thread; none keeps state.
 ///
-/// Errors: std::runtime_error whose text names the path and the cause: nothing to draw (empty
-/// history), a size outside 400 x 300 .. 8000 x 8000 px, a suffix that is not listed, a missing
-/// font (package fonts-dejavu-core), a file that cannot be written.
+/// Errors: std::runtime_error whose text names the path and the cause: a suffix that is not listed,
+/// a missing font (package fonts-dejavu-core), a file that cannot be written; PictureRefused where
+/// there is nothing to draw, or a size outside 400 x 300 .. 8000 x 8000 px (snapshots/refused.h).
 
 #include <cstdint>
 #include <span>

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/sensing/noise.h"
+#include "snapshots/refused.h"
 
 namespace regrasp {
 namespace {
@@ -56,7 +57,7 @@ bool Within(std::span<const Frame> frames, const Event& event) {
 
 std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
                               const std::string& path) {
-  if (history.empty()) throw std::runtime_error(path + ": nothing to draw: the history is empty");
+  if (history.empty()) throw PictureRefused(path, "nothing to draw: the history is empty");
   std::size_t start = history.size() - 1;
   while (start > 0 && history[start - 1].time_s <= history[start].time_s) --start;
   history = history.subspan(start);

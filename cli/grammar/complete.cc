@@ -5,22 +5,13 @@
 #include <span>
 
 #include "cli/client/context.h"
+#include "cli/grammar/flags.h"
 #include "cli/grammar/grammar.h"
 #include "core/hand/model_path.h"
 #include "core/protocol/start_words.h"
 
 namespace regrasp::cli {
 namespace {
-
-std::vector<std::string> Spellings(const Arg& arg) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin < arg.flags.size();) {
-    const auto comma = std::min(arg.flags.find(',', begin), arg.flags.size());
-    names.push_back(arg.flags.substr(begin, comma - begin));
-    begin = comma + 1;
-  }
-  return names;
-}
 
 const Arg* FindFlag(std::span<const Arg> args, const std::string& word) {
   for (const Arg& arg : args)

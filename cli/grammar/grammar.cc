@@ -10,6 +10,7 @@
 #include "cli/client/errors.h"
 #include "cli/commands/hand.h"
 #include "cli/commands/object.h"
+#include "cli/grammar/flags.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
@@ -28,6 +29,12 @@ constexpr Unit kUnits[] = {{"_rad_s", "DEG_S", kDegree},
                            {"_s", "S", 1},
                            {"_hz", "HZ", 1}};
 
+const Unit* UnitOf(std::string_view key) {
+  const auto unit =
+      std::ranges::find_if(kUnits, [key](const Unit& u) { return key.ends_with(u.suffix); });
+  return unit == std::end(kUnits) ? nullptr : unit;
+}
+
 Arg FromParam(const ParamSpec& param, bool positional) {
   Arg arg;
   arg.key = param.name;
@@ -37,16 +44,11 @@ Arg FromParam(const ParamSpec& param, bool positional) {
   arg.wire = true;
   arg.min = param.min;
   arg.max = param.max;
-  std::string name(param.name);
-  for (const Unit& unit : kUnits) {
-    if (name.ends_with(unit.suffix)) {
-      name.erase(name.size() - unit.suffix.size());
-      arg.metavar = unit.metavar;
-      arg.scale = unit.scale;
-      break;
-    }
+  if (const Unit* unit = UnitOf(param.name)) {
+    arg.metavar = unit->metavar;
+    arg.scale = unit->scale;
   }
-  std::replace(name.begin(), name.end(), '_', '-');
+  std::string name = FlagWord(param.name);
   if (!positional) arg.flags = "--" + name;
   switch (param.type) {
     case ParamType::kBool:
@@ -89,6 +91,13 @@ Arg FromParam(const ParamSpec& param, bool positional) {
 }
 
 }  // namespace
+
+std::string FlagWord(std::string_view key) {
+  const Unit* unit = UnitOf(key);
+  std::string word(key.substr(0, key.size() - (unit ? unit->suffix.size() : 0)));
+  std::ranges::replace(word, '_', '-');
+  return word;
+}
 
 Arg WaitFlag() {
   return {.key = "wait",

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "cli/client/errors.h"
+#include "cli/grammar/flags.h"
 #include "cli/grammar/grammar.h"
 #include "cli/grammar/values.h"
 #include "core/common/nearest_name.h"
@@ -52,22 +53,6 @@ std::string HelpHint(const std::string& words) {
   return words.empty() ? "regrasp help" : "regrasp help " + words;
 }
 
-std::vector<std::string_view> FlagNames(const Node* node) {
-  std::vector<std::string_view> names;
-  const auto add = [&names](const Arg& arg) {
-    for (std::size_t begin = 0; begin < arg.flags.size();) {
-      const auto comma = std::min(arg.flags.find(',', begin), arg.flags.size());
-      names.push_back(std::string_view(arg.flags).substr(begin, comma - begin));
-      begin = comma + 1;
-    }
-  };
-  if (node != nullptr && node->command != nullptr) {
-    for (const auto& arg : node->command->args) add(arg);
-  }
-  for (const auto& arg : GlobalArgs()) add(arg);
-  return names;
-}
-
 /// The error for the first word that CLI11 could not place.
 CliError Unexpected(const std::string& word, const std::string& scope, const Node* node) {
   if (word.size() > 1 && word[0] == '-') {
@@ -75,7 +60,10 @@ CliError Unexpected(const std::string& word, const std::string& scope, const Nod
     if (name == "--wait" && node != nullptr && node->command != nullptr)
       return {kUsage, fmt::format("'{}' has nothing to wait for: it starts no job", scope),
               "regrasp " + scope};
-    const auto nearest = NearestName(name, FlagNames(node));
+    const bool known = node != nullptr && node->command != nullptr;
+    const std::string nearest = NearestFlag(
+        name, known ? std::span<const Arg>(node->command->args) : std::span<const Arg>(),
+        GlobalArgs());
     return {
         kUsage,
         fmt::format("unknown option '{}'{}", name, scope.empty() ? "" : " of '" + scope + "'"),

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -29,11 +31,45 @@ constexpr Unit kUnits[] = {
     {"1/mm", 'i', 1e3},    {"pt", 'p', 1},      {"N/m", 'k', 1},
     {"N/mm", 'k', 1e3}};
 
+/// What a person types for one of them, alone or in a quotient: "degrees/second".
+struct Spelling {
+  std::string_view name;                  ///< of kUnits
+  std::array<std::string_view, 6> typed;  ///< what is left of it is empty
+};
+constexpr Spelling kSpellings[] = {
+    {"deg", {"degree", "degrees", "degs", "°"}},
+    {"rad", {"radian", "radians", "rads"}},
+    {"turn", {"turns"}},
+    {"mm", {"millimetre", "millimetres", "millimeter", "millimeters"}},
+    {"cm", {"centimetre", "centimetres", "centimeter", "centimeters"}},
+    {"m", {"metre", "metres", "meter", "meters"}},
+    {"um", {"micrometre", "micrometres", "micrometer", "micrometers", "µm", "μm"}},  // two letters
+    {"N", {"newton", "newtons", "Newton", "Newtons"}},
+    {"mN", {"millinewton", "millinewtons"}},
+    {"s", {"second", "seconds", "sec", "secs"}},
+    {"ms", {"millisecond", "milliseconds", "msec", "msecs"}},
+    {"min", {"minute", "minutes", "mins"}},
+    {"Hz", {"hertz", "Hertz"}},
+    {"kHz", {"kilohertz", "kiloHertz"}},
+    {"kg", {"kilogram", "kilograms", "kilogramme", "kilogrammes"}},
+    {"g", {"gram", "grams", "gramme", "grammes"}},
+    {"pt", {"point", "points"}}};
+
 /// As grammar.cc has them; longer ends first.
 constexpr std::pair<std::string_view, std::string_view> kKeyEnds[] = {
     {"_rad_s", "deg/s"}, {"_rad", "deg"}, {"_m", "mm"}, {"_n", "N"}, {"_s", "s"}, {"_hz", "Hz"}};
 
-const Unit* Find(std::string_view name) {
+std::string_view NameOf(std::string_view typed) {
+  if (typed.empty()) return typed;
+  for (const Spelling& spelling : kSpellings)
+    if (std::ranges::find(spelling.typed, typed) != spelling.typed.end()) return spelling.name;
+  return typed;
+}
+
+const Unit* Find(std::string_view typed) {
+  std::string name(NameOf(typed.substr(0, typed.find('/'))));
+  if (const auto slash = typed.find('/'); slash != std::string_view::npos)
+    name.append("/").append(NameOf(typed.substr(slash + 1)));
   for (const Unit& unit : kUnits)
     if (unit.name == name) return &unit;
   return nullptr;

@@ -9,9 +9,9 @@
 namespace regrasp::cli {
 
 /// `text` as a number of `unit` ("deg", "mm", "N", "s", "Hz", "deg/s", "kg", ...; letters' case as
-/// in SI): a bare number is one already, any other unit of the same kind is converted. With an
-/// empty or unknown `unit` only bare numbers are taken. Throws CliError(kUsage) that names `what`
-/// and the units that are allowed.
+/// in SI; words too: degrees, turns, seconds): a bare number is one already, any other unit of the
+/// same kind is converted. With an empty or unknown `unit` only bare numbers are taken. Throws
+/// CliError(kUsage) that names `what` and the units that are allowed.
 double ParseQuantity(const std::string& text, const std::string& what, std::string_view unit);
 
 /// Whether `text` is a number with something behind it that may be a unit.

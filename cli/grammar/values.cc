@@ -7,6 +7,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/grammar/units.h"
+#include "core/common/limit_text.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
@@ -20,11 +21,12 @@ void CheckRange(const Arg& arg, double typed) {
   const bool named =
       !arg.unit.empty() || arg.scale != 1 || arg.metavar == "S" || arg.metavar == "HZ";
   const std::string unit = named ? " " + (arg.unit.empty() ? arg.metavar : arg.unit) : "";
+  const std::string least = LimitText(arg.min / arg.scale);
   throw CliError(kUsage, arg.max >= 1e299
-                             ? fmt::format("{} {:g}: allowed are {:g}{} and more", ArgName(arg),
-                                           typed, arg.min / arg.scale, unit)
-                             : fmt::format("{} {:g}: allowed are {:g} to {:g}{}", ArgName(arg),
-                                           typed, arg.min / arg.scale, arg.max / arg.scale, unit));
+                             ? fmt::format("{} {}: allowed are {}{} and more", ArgName(arg), typed,
+                                           least, unit)
+                             : fmt::format("{} {}: allowed are {} to {}{}", ArgName(arg), typed,
+                                           least, LimitText(arg.max / arg.scale), unit));
 }
 
 }  // namespace

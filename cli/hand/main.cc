@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "cli/hand/hand_command.h"
+#include "core/common/limit_text.h"
 #include "core/files/json_text.h"
 #include "core/files/names.h"
 
@@ -21,10 +22,10 @@ double Options::Number(const std::string& flag, double otherwise, double min, do
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !(value >= min && value <= max))
-    throw Failure(
-        ExitCode::kUsage,
-        fmt::format("{} {}: expected a number from {:g} to {:g}", flag, Shown(text), min, max),
-        "regrasp help hand " + verb);
+    throw Failure(ExitCode::kUsage,
+                  fmt::format("{} {}: expected a number from {} to {}", flag, Shown(text),
+                              LimitText(min), LimitText(max)),
+                  "regrasp help hand " + verb);
   return value;
 }
 

@@ -1,19 +1,15 @@
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
+#include "cli/hand/fewer_fingers.h"
 #include "cli/hand/hand_command.h"
 #include "cli/hand/lay_object.h"
+#include "cli/hand/progress.h"
+#include "cli/hand/scenario_file.h"
 #include "cli/hand/sheet.h"
-#include "core/common/finger_set.h"
-#include "core/files/draft.h"
 #include "core/posture/grasp_search.h"
 #include "core/posture/hand_guess.h"
 #include "core/posture/scenario_text.h"
@@ -29,30 +25,6 @@ constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small han
 constexpr int kSearches = 3;        // for a hand of which no finger can be left out
 constexpr std::size_t kWays = 8;    // to lay it into a grasp, that are tried
 constexpr double kLeastBall = 30;   // that stands for it [mm]
-
-/// Progress on a terminal's last line, or a line per tenth elsewhere.
-class Progress {
- public:
-  explicit Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) != 0) {}
-  void Show(const std::string& what, double done) {
-    const int percent = static_cast<int>(100 * done);
-    if (quiet_ || (percent == percent_ && what == what_)) return;
-    if (!terminal_ && what == what_ && percent < percent_ + 20) return;
-    percent_ = percent;
-    what_ = what;
-    fmt::print(stderr, "{}{} {:3d} %{}", terminal_ ? "\r" : "", what, percent,
-               terminal_ ? "   " : "\n");
-    std::fflush(stderr);
-  }
-  ~Progress() {
-    if (!quiet_ && terminal_ && percent_ >= 0) fmt::print(stderr, "\r{:60}\r", "");
-  }
-
- private:
-  bool quiet_, terminal_;
-  int percent_ = -1;
-  std::string what_;
-};
 
 /// A ball of the search path's that is nearest in size.
 std::string BallFor(double size_mm) {
@@ -86,7 +58,7 @@ class Maker {
   }
 
   Answer Make() {
-    CheckOutput();
+    out_.Check();
     Read();
     if (!object_.empty()) ReadObject();
     const int searches = all_.num_fingers() < kFewestToRegrasp ? kSearches : 1;
@@ -112,21 +84,6 @@ class Maker {
   }
 
  private:
-  void CheckOutput() const {
-    if (out_.extension() != ".toml")
-      throw Failure(ExitCode::kUsage,
-                    fmt::format("-o {}: a scenario file must end in .toml", out_.string()),
-                    "regrasp help hand new");
-    std::error_code ignored;
-    if (fs::exists(out_, ignored))
-      throw Failure(ExitCode::kIo, fmt::format("{}: exists; nothing is overwritten", out_.string()),
-                    "another name for -o, or remove the file");
-    const fs::path directory = out_.parent_path().empty() ? "." : out_.parent_path();
-    if (!fs::is_directory(directory, ignored))
-      throw Failure(ExitCode::kIo, fmt::format("{}: no such directory", directory.string()),
-                    "mkdir -p " + directory.string());
-  }
-
   void Read() {
     if (fs::path(options_.file).extension() == ".toml")
       throw Failure(
@@ -137,7 +94,7 @@ class Maker {
     guess_ = GuessHand(urdf_);
     guess_.layout.armature = kArmature;
     hand_ = LoadHand(urdf_, guess_.layout, options_.load(), &report_);
-    hand_.name = out_.stem().string();
+    hand_.name = out_.name();
     whole_ = guess_.layout;
     all_ = hand_;
   }
@@ -190,31 +147,13 @@ class Maker {
         if (out == 2) without_ += ", " + all_.fingers[static_cast<std::size_t>(b)].name;
         const HandLayout layout = Without(all_, whole_, out == 0 ? FingerSet{} : FingerSet{a, b});
         hand_ = LoadHand(urdf_, layout, options_.load());
-        hand_.name = out_.stem().string();
+        hand_.name = out_.name();
         const Found found = Choose(FindGrasps(hand_, search), size_mm);
         if (!found.Better(best_)) continue;
         best_ = found;
         size_mm_ = size_mm;
         guess_.layout = layout;
       }
-  }
-
-  /// The layout without some fingers; the joints that move nothing else are locked, stretched.
-  static HandLayout Without(const HandModel& hand, HandLayout layout, FingerSet out) {
-    for (int f = hand.num_fingers() - 1; f >= 0; --f) {
-      if (!out.contains(f)) continue;
-      layout.fingers.erase(layout.fingers.begin() + f);
-      for (const int j : hand.fingers[static_cast<std::size_t>(f)].joints) {
-        bool shared = false;
-        for (int other = 0; other < hand.num_fingers(); ++other)
-          if (!out.contains(other))
-            shared = shared || std::ranges::count(
-                                   hand.fingers[static_cast<std::size_t>(other)].joints, j) > 0;
-        const Joint& joint = hand.joints[static_cast<std::size_t>(j)];
-        if (!shared) layout.locked[joint.name] = std::clamp(0.0, joint.lower, joint.upper);
-      }
-    }
-    return layout;
   }
 
   /// So wide that the object's farthest corner is clear of the fingertips, if they open so far [m].
@@ -243,7 +182,7 @@ class Maker {
       if (found.way.stuck >= 0 && k + 1 < count) continue;
       Scenario& scenario = found.model.scenario;
       scenario.name = scenario.hand = hand_.name;
-      scenario.object = object_.empty() ? BallFor(size_mm) : NamedObject();
+      scenario.object = object_.empty() ? BallFor(size_mm) : out_.NameOfObject(object_);
       scenario.q_preshape = found.way.open;
       scenario.q_closed = found.way.closed;
       scenario.X_WO.translation() = found.grasp.p_WO;
@@ -276,32 +215,9 @@ class Maker {
     }
   }
 
-  /// The object as the scenario names it: a name, or where its file is from there.
-  std::string NamedObject() const {
-    if (fs::path(object_).extension() != ".urdf") return object_;
-    const std::string relative = FromScenario(object_);
-    return relative.empty() ? fs::absolute(object_).string() : relative;
-  }
-
-  /// The URDF as the scenario names it: nothing where it stands beside it under the same name.
-  std::string NamedUrdf() const {
-    const std::string relative = FromScenario(urdf_);
-    if (relative == out_.stem().string() + ".urdf") return "";
-    return relative.empty() ? fs::absolute(urdf_).string() : relative;
-  }
-
-  /// The way to a file from the scenario's place; empty where there is none.
-  std::string FromScenario(const fs::path& file) const {
-    std::error_code ignored;
-    const fs::path directory =
-        fs::absolute(out_.parent_path().empty() ? fs::path(".") : out_.parent_path(), ignored);
-    return fs::relative(fs::absolute(file, ignored), directory.lexically_normal(), ignored)
-        .string();
-  }
-
   Sheet MakeSheet() const {
     Sheet sheet;
-    sheet.file = out_;
+    sheet.file = out_.path();
     sheet.urdf = urdf_;
     sheet.seed = search_.seed;
     sheet.guess = guess_;
@@ -315,28 +231,23 @@ class Maker {
 
   void Write(const Sheet& sheet) const {
     ScenarioText text;
-    text.urdf = NamedUrdf();
+    text.urdf = out_.NameOfUrdf(urdf_);
     text.layout = guess_.layout;
     text.options = options_.load();
     text.scenario = best_.model.scenario;
     text.comments = {
         fmt::format("Made by: regrasp hand new {} -o {} {}--object-size {:g} --seed {} "
                     "--tilt {:g}",
-                    urdf_.filename().string(), out_.filename().string(),
+                    urdf_.filename().string(), out_.path().filename().string(),
                     object_.empty() ? "" : "--object " + object_ + " ", size_mm_, search_.seed,
                     tilt_ * 180 / M_PI),
         sheet.ScoreLine()};
-    std::ofstream file(out_);
-    file << WriteScenario(text, hand_);
-    file.close();
-    if (!file)
-      throw Failure(ExitCode::kIo,
-                    fmt::format("{}: cannot write: {}", out_.string(), std::strerror(errno)),
-                    "another place for -o");
+    out_.Write(WriteScenario(text, hand_));
   }
 
   const Options& options_;
-  fs::path out_, urdf_;
+  ScenarioFile out_;
+  fs::path urdf_;
   std::string object_;  // "": a ball
   ObjectModel body_;    // otherwise
   ObjectBox box_;

@@ -7,6 +7,7 @@
 #include "cli/client/errors.h"
 #include "cli/help/examples.h"
 #include "cli/help/wrap.h"
+#include "core/common/limit_text.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
@@ -109,9 +110,8 @@ std::string MeaningOf(const Arg& arg) {
   std::string text = arg.help;
   if (!arg.values.empty()) text += fmt::format(": {}", fmt::join(arg.values, ", "));
   if (arg.kind != ArgKind::kText && arg.kind != ArgKind::kFlag && arg.max < 1e299) {
-    const std::string most =
-        arg.max == kMaxSafeInteger ? "2^53" : fmt::format("{:.6g}", arg.max / arg.scale);
-    text += fmt::format("; {:.6g} to {}", arg.min / arg.scale, most);
+    text +=
+        fmt::format("; {} to {}", LimitText(arg.min / arg.scale), LimitText(arg.max / arg.scale));
   }
   if (!arg.default_text.empty()) text += fmt::format(" (default: {})", arg.default_text);
   return text;

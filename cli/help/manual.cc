@@ -4,6 +4,7 @@
 
 #include <cctype>
 
+#include "cli/grammar/flags.h"
 #include "cli/grammar/grammar.h"
 #include "cli/help/examples.h"
 #include "cli/help/help.h"
@@ -27,12 +28,8 @@ std::string Sentence(std::string text) {
 
 std::string Flags(const Arg& arg) {
   std::string text;
-  for (std::size_t begin = 0; begin < arg.flags.size();) {
-    const auto comma = std::min(arg.flags.find(',', begin), arg.flags.size());
-    text += fmt::format("{}*{}*", text.empty() ? "" : ", ",
-                        Escaped(arg.flags.substr(begin, comma - begin)));
-    begin = comma + 1;
-  }
+  for (const std::string& flag : Spellings(arg))
+    text += fmt::format("{}*{}*", text.empty() ? "" : ", ", Escaped(flag));
   if (!arg.metavar.empty()) text += fmt::format("{}_{}_", text.empty() ? "" : " ", arg.metavar);
   return text;
 }

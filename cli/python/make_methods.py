@@ -20,13 +20,17 @@ def python_name(name):
     return name + "_" if keyword.iskeyword(name) else name
 
 
+def limit_text(value):
+    return "2**53" if value == 2**53 else f"{value:.16g}"
+
+
 def parameter_line(p):
     unit = f" [{p['unit']}]" if p.get("unit") else ""
     # Long lists (models, parameters) are the daemon's, not the page's: `describe` tells them.
     values = "; one of " + ", ".join(p["values"]) if 0 < len(p.get("values", [])) <= MOST_VALUES else ""
     limits = ""
     if "min" in p or "max" in p:
-        limits = "; " + " to ".join(f"{p[end]:.16g}" if end in p else "any" for end in ("min", "max"))
+        limits = "; " + " to ".join(limit_text(p[end]) if end in p else "any" for end in ("min", "max"))
     default = f"; left out: {p['default']}" if p.get("default") else ""
     return f"{python_name(p['name'])}: {p['description']}{unit}{values}{limits}{default}."
 

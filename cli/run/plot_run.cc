@@ -4,19 +4,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
+#include "cli/client/errors.h"
 #include "cli/run/run_window.h"
 #include "core/files/draft.h"
 #include "core/journal/provenance.h"
 #include "snapshots/plots.h"
+#include "snapshots/refused.h"
 
 namespace regrasp::run {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr double kFrameRate = 50;     // [Hz] of pictures over time
 constexpr int kMostFrames = 6000;     // of a picture: more is not seen
 constexpr std::size_t kCompared = 2;  // explorations of one file
+
+using cli::CliError;
+
+/// As the user called the file, or nearly.
+std::string Name(const std::string& path) { return fs::path(path).filename().string(); }
+
+/// Of what has been asked for, not of the picture's file.
+CliError Refusal(const PictureRefused& refused, const std::string& plot, const std::string& run,
+                 const PlotOptions& options, double last_s) {
+  const std::string command = fmt::format("regrasp plot {} {}", plot, run);
+  if (const auto* size = dynamic_cast<const PictureSizeRefused*>(&refused))
+    return {ExitCode::kUsage, size->cause(),
+            size->nearest_dpi > 0 ? fmt::format("{} --size {:g} --dpi {:g}", command,
+                                                options.width_mm, size->nearest_dpi)
+                                  : "regrasp help plot"};
+  return {ExitCode::kRefused, fmt::format("{}: {}", run, refused.cause()),
+          last_s > 0 ? fmt::format("{}    (without --last)", command)
+                     : fmt::format("{} --last 10    (the last 10 s)", command)};
+}
 
 struct Pictured {
   PlotInput input;
@@ -77,7 +101,8 @@ Pictured LastJob(const std::string& path, double last_s) {
                    false);
   const std::vector<std::int64_t> starts = JobStarts(segment, false);
   if (starts.empty())
-    throw std::runtime_error(path + ": no job in the last segment; give --last SECONDS");
+    throw CliError(ExitCode::kRefused, Name(path) + ": no job in the last segment",
+                   fmt::format("regrasp plot NAME {} --last 10    (the last 10 s)", Name(path)));
   return Execute(path, dt, starts.back(), end, true);
 }
 
@@ -96,8 +121,10 @@ std::vector<Pictured> Explorations(const std::string& path, std::size_t count) {
       result.insert(result.begin(), std::move(one));
   }
   if (result.size() < count)
-    throw std::runtime_error(fmt::format("{}: {} explorations in the last segment, {} are needed",
-                                         path, result.size(), count));
+    throw CliError(ExitCode::kRefused,
+                   fmt::format("{}: {} explorations in the last segment, {} are needed", Name(path),
+                               result.size(), count),
+                   "regrasp plot quality " + Name(path));
   return result;
 }
 
@@ -126,10 +153,14 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
                                   PlotOptions options, const std::string& out) {
   const PlotRow* plot = FindPlot(name);
   if (plot == nullptr || plot->of == PlotOf::kIncident)
-    throw std::runtime_error(name + ": a run file has the pictures " + PicturesOfRuns());
+    throw CliError(ExitCode::kUsage, name + ": a run file has the pictures " + PicturesOfRuns(),
+                   "regrasp plot quality " + Name(paths.front()));
   const bool comparison = plot->of == PlotOf::kExplorations;
   if (!comparison && paths.size() > 1)
-    throw std::runtime_error("only a comparison shows several runs");
+    throw CliError(ExitCode::kUsage,
+                   fmt::format("{} shows one run, {} are given; only comparison shows several",
+                               name, paths.size()),
+                   fmt::format("regrasp plot {} {}", name, Name(paths.front())));
   Draft draft(out, Draft::Existing::kReplace);
   std::vector<Pictured> runs;
   if (comparison)
@@ -137,11 +168,15 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
   else
     runs.push_back(LastJob(paths.front(), options.last_s));
   PlotInput input = std::move(runs.front().input);
-  options.last_s = 0;
+  const double last_s = std::exchange(options.last_s, 0);
   options.object_name = input.options.object_name;
   options.changed = input.options.changed;
   input.options = options;
-  DrawPlot(name, input, draft.path());
+  try {
+    DrawPlot(name, input, draft.path());
+  } catch (const PictureRefused& refused) {
+    throw Refusal(refused, name, Name(paths.front()), options, last_s);
+  }
   std::vector<std::string> notes;
   for (const Pictured& run : runs)
     if (!run.note.empty()) notes.push_back(run.note);

@@ -12,8 +12,9 @@ namespace regrasp::run {
 /// Draws `name`, any picture but that of an incident, of the last segment into `out`, which
 /// is replaced: its last job, or the newest `options.last_s` seconds where that is more than 0. A
 /// comparison shows the last exploration of each file, of one file its last two. Throws
-/// std::runtime_error: a picture that a run file does not have, no job or exploration, a replay
-/// that differs from its recording, what the pictures throw. Returns notes, see RunWindow.
+/// cli::CliError where the run has no such picture, no job or exploration, nothing to draw;
+/// std::runtime_error: a replay that differs from its recording, what else pictures throw. Returns
+/// notes, see RunWindow.
 std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const std::string& name,
                                   PlotOptions options, const std::string& out);
 

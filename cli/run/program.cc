@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "cli/client/errors.h"
 #include "core/files/names.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
@@ -22,6 +23,19 @@ void TellOnce(const std::vector<std::string>& differences, Json* told) {
     told->push_back(difference);
     Note(difference);
   }
+}
+
+int TellFailure(const Command& command, const std::string& cause, const std::string& next,
+                ExitCode code) {
+  const std::string message = ShownLines(cause), hint = ShownLines(next);
+  if (command.json())
+    fmt::print(stderr, "{}\n",
+               Json{{"error",
+                     {{"exit_code", static_cast<int>(code)}, {"message", message}, {"hint", hint}}}}
+                   .dump());
+  else
+    fmt::print(stderr, "regrasp: {}\n  try: {}\n", message, hint);
+  return static_cast<int>(code);
 }
 
 }  // namespace
@@ -96,12 +110,10 @@ int RunVerb(int argc, char** argv,
     fmt::print(stderr, "{}: unknown verb '{}'\n  try: regrasp help replay\n", argv[0],
                command.verb);
     return static_cast<int>(ExitCode::kUsage);
+  } catch (const cli::CliError& e) {
+    return TellFailure(command, e.what(), e.hint, e.code);
   } catch (const std::exception& e) {
-    if (command.json())
-      fmt::print(stderr, "{}\n", Json{{"error", {{"message", ShownLines(e.what())}}}}.dump());
-    else
-      fmt::print(stderr, "regrasp: {}\n  try: regrasp record list\n", ShownLines(e.what()));
-    return static_cast<int>(ExitCode::kIo);
+    return TellFailure(command, e.what(), "regrasp record list", ExitCode::kIo);
   }
 }
 

@@ -40,8 +40,8 @@ void TellDifferences(std::string_view config, Json* told);
 Json LossesJson(const std::vector<McapLoss>& lost);
 std::string LossesText(const std::vector<McapLoss>& lost);
 
-/// Parses, runs what belongs to the verb, and turns exceptions into an error. Returns the exit
-/// code.
+/// Parses, runs what belongs to the verb, and turns exceptions into an error: cli::CliError with
+/// its exit code and hint, all others as faults of the file. Returns the exit code.
 int RunVerb(int argc, char** argv,
             const std::map<std::string, ExitCode (*)(const Command&)>& verbs);
 

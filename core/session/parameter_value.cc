@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/common/limit_text.h"
 #include "core/common/nearest_name.h"
 
 namespace regrasp {
@@ -125,7 +126,7 @@ std::string AllowedText(const ParameterInfo& info) {
     }
     return text;
   }
-  std::string text = Number(info.min) + " ... " + Number(info.max);
+  std::string text = LimitText(info.min) + " ... " + LimitText(info.max);
   if (!info.unit.empty()) text += " " + std::string(info.unit);
   if (info.type == ParameterType::kInteger) return "an integer, " + text;
   return info.type == ParameterType::kVector ? "3 numbers, each " + text : text;

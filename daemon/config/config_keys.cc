@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 
+#include "core/common/limit_text.h"
 #include "core/common/nearest_name.h"
 #include "core/protocol/methods.h"
 #include "core/protocol/start_words.h"
@@ -134,9 +135,8 @@ void SetKey(DaemonConfig* config, const ConfigKey& key, const std::string& text,
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = error == std::errc() && rest == text.data() + text.size();
     if (!whole || static_cast<double>(value) < key.min || static_cast<double>(value) > key.max)
-      throw ConfigError(
-          fmt::format("{}{} = {}: expected an integer, {} ... {}", where, key.name, text, key.min,
-                      key.max == kMaxSafeInteger ? "2^53" : fmt::format("{}", key.max)));
+      throw ConfigError(fmt::format("{}{} = {}: expected an integer, {} ... {}", where, key.name,
+                                    text, LimitText(key.min), LimitText(key.max)));
   }
   key.set(*config, text);
   CheckConfig(*config, where);

@@ -5,6 +5,7 @@
 
 #include <cctype>
 
+#include "core/common/limit_text.h"
 #include "core/exploration/criterion.h"
 #include "core/journal/run_messages.h"
 #include "core/protocol/errors.h"
@@ -65,8 +66,7 @@ std::string Limits(const ParamSpec& spec) {
   const bool low = spec.min > -1e299, high = spec.max < 1e299;
   if (!spec.values.empty()) return fmt::format("`{}`", fmt::join(spec.values, "`, `"));
   if (spec.names != NameSource::kNone) return fmt::format("a {} name", Name(spec.names));
-  if (spec.max == kMaxSafeInteger) return fmt::format("{} ... 2^53", spec.min);
-  if (low && high) return fmt::format("{} ... {}", spec.min, spec.max);
+  if (low && high) return fmt::format("{} ... {}", LimitText(spec.min), LimitText(spec.max));
   return {};
 }
 
@@ -96,11 +96,12 @@ std::string ParameterSection() {
       "|---|---|---|---|---|---|---|\n";
   const Parameters defaults;
   for (const ParameterInfo& info : ParameterTable()) {
-    const std::string allowed = info.words.empty()
-                                    ? info.type == ParameterType::kBoolean
-                                          ? "`true`, `false`"
-                                          : fmt::format("{} ... {}", info.min, info.max)
-                                    : fmt::format("`{}`", fmt::join(info.words, "`, `"));
+    const std::string allowed =
+        info.words.empty()
+            ? info.type == ParameterType::kBoolean
+                  ? "`true`, `false`"
+                  : fmt::format("{} ... {}", LimitText(info.min), LimitText(info.max))
+            : fmt::format("`{}`", fmt::join(info.words, "`, `"));
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", info.name, Name(info.type),
                         info.unit, allowed, ParameterText(info, info.get(defaults)), info.meaning,
                         info.source);

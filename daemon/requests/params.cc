@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/common/limit_text.h"
 #include "core/common/nearest_name.h"
 #include "core/files/json_text.h"
 
@@ -25,9 +26,10 @@ std::string Shown(const JsonIn& value) {
 std::string Range(const ParamSpec& spec) {
   const bool low = spec.min > -1e299, high = spec.max < 1e299;
   const std::string unit = spec.unit.empty() ? "" : fmt::format(" {}", spec.unit);
-  if (low && high) return fmt::format("{} ... {}{}", spec.min, spec.max, unit);
-  if (low) return fmt::format("at least {}{}", spec.min, unit);
-  if (high) return fmt::format("at most {}{}", spec.max, unit);
+  if (low && high)
+    return fmt::format("{} ... {}{}", LimitText(spec.min), LimitText(spec.max), unit);
+  if (low) return fmt::format("at least {}{}", LimitText(spec.min), unit);
+  if (high) return fmt::format("at most {}{}", LimitText(spec.max), unit);
   return "any";
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <optional>
 
 #include "core/journal/provenance.h"
 #include "daemon/output/files.h"
@@ -12,6 +13,7 @@
 #include "daemon/output/output_file.h"
 #include "daemon/requests/handlers.h"
 #include "snapshots/plots.h"
+#include "snapshots/refused.h"
 
 namespace regrasp::handlers {
 namespace {
@@ -33,7 +35,7 @@ struct Job {
   std::size_t most = 0;  ///< pictures in the directory
   bool overwrite = false;
   std::uintmax_t bytes = 0;
-  std::string failure;
+  std::optional<RpcError> error;
 };
 
 std::vector<Frame> Copy(const std::vector<std::shared_ptr<const Frame>>& frames) {
@@ -43,6 +45,23 @@ std::vector<Frame> Copy(const std::vector<std::shared_ptr<const Frame>>& frames)
   return copy;
 }
 
+/// Of what has been asked for, not of the file: without the names of ours.
+RpcError Refusal(const Job& job, const PictureRefused& refused) {
+  RpcError error{ErrorCode::kBadState, refused.cause(), "regrasp grasp --wait", {}, {}};
+  if (job.options.last_s > 0)
+    error.hint = fmt::format("regrasp plot {}    (without --last)", job.name);
+  if (const auto* size = dynamic_cast<const PictureSizeRefused*>(&refused)) {
+    error.code = ErrorCode::kInvalidParams;
+    error.param = size->nearest_dpi > 0 ? "dpi" : "size_m";
+    error.hint = size->nearest_dpi > 0
+                     ? fmt::format("regrasp plot {} --size {:g} --dpi {:g}", job.name,
+                                   job.options.width_mm, size->nearest_dpi)
+                     : "regrasp help plot";
+  }
+  return error;
+}
+
+/// Throws RpcException where there is no such picture, whatever its file.
 void DrawInto(const Job& job, const std::string& path) {
   PlotInput input;
   if (job.incident) {
@@ -58,7 +77,11 @@ void DrawInto(const Job& job, const std::string& path) {
   }
   input.object = *job.object;
   input.options = job.options;
-  DrawPlot(job.name, input, path);
+  try {
+    DrawPlot(job.name, input, path);
+  } catch (const PictureRefused& refused) {
+    throw RpcException(Refusal(job, refused));
+  }
 }
 
 /// Leaves room for one more: the oldest of those that nobody gave a name to go.
@@ -90,8 +113,10 @@ void Draw(Job* job) {
     job->bytes = WriteOutput(job->directory / job->file,
                              job->overwrite ? Draft::Existing::kReplace : Draft::Existing::kKeep,
                              [job](const std::string& draft) { DrawInto(*job, draft); });
+  } catch (const RpcException& e) {
+    job->error = e.error();
   } catch (const std::exception& e) {
-    job->failure = e.what();
+    job->error = {ErrorCode::kIo, e.what(), "regrasp status    (output_dir)", {}, {}};
   }
 }
 
@@ -157,10 +182,7 @@ Outcome Plot(Service& service, const Params& params, Client&) {
 
   const auto draw = [&service, job, tick](Done done) {
     const auto finish = [job, tick, done] {
-      if (!job->failure.empty()) {
-        const RpcError error{ErrorCode::kIo, job->failure, "look at output_dir in status", {}, {}};
-        return done({}, &error);
-      }
+      if (job->error) return done({}, &*job->error);
       done({{"file", job->file},
             {"path", (job->directory / job->file).string()},
             {"bytes", job->bytes},

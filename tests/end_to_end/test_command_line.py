@@ -26,11 +26,22 @@ class Words(Case):
             (["watch", "qualty"], "qualty", "regrasp watch quality"),
             (["help", "explor"], "explor", "regrasp help explore"),
             (["grasp", "--wiat"], "--wiat", "--wait"),
+            (["grasp", "--sockt", "x"], "--sockt", "--socket"),
+            (["watch", "status", "--coulor", "never"], "--coulor", "--color"),
+            # What the wire calls the parameter.
+            (["move", "--offset", "0,0,5mm"], "--offset", "--by"),
+            (["move", "--ofset", "0,0,5mm"], "--ofset", "--by"),
+            (["move", "--rotation", "0,0,5"], "--rotation", "--turn"),
         ]:
             with self.subTest(words):
                 cause, hint = self.refused(2, *words)
                 self.assertIn(f"'{wrong}'", cause)
                 self.assertIn(nearest, hint)
+
+    def test_options_that_are_like_no_other_get_the_help_and_no_guess(self):
+        for words in (["explore", "ring", "--offset", "5mm"], ["move", "--shift", "0,0,5"], ["rotate", "--rate", "4"], ["push", "--weight", "1"]):
+            with self.subTest(words):
+                self.assertEqual(self.refused(2, *words)[1], "  try: regrasp help " + words[0])
 
     def test_incomplete_and_contradictory_words_are_usage_errors(self):
         for words in [[], ["noise"], ["job"], ["explore"], ["param", "set", "gravity"], ["explore", "ring", "extra"], ["--json", "--csv", "status"],
@@ -56,6 +67,8 @@ class Words(Case):
                       ["watch", "status", "--rate", "0"], ["watch", "status", "--count", "0"]]:
             with self.subTest(words):
                 self.refused(2, *words)
+        self.assertIn("allowed are 0 to 2^53", self.refused(2, "explore", "ring", "--seed", "-1")[0])
+        self.assertIn("--max-cycles 2000000: allowed are 1 to 1000000", self.refused(2, "explore", "ring", "--max-cycles", "2000000")[0])
 
     def test_names_of_commands_may_be_arguments(self):
         # Each gets as far as looking for the daemon: the words were understood.
@@ -83,6 +96,7 @@ class Words(Case):
             self.assertEqual(text, self.expect(0, *command["words"].split(), "--help").stdout)
             for line in text.splitlines() + overview.splitlines():
                 self.assertLessEqual(len(line), 80, line)
+            self.assertNotRegex(text, r"\d[eE][+-]?\d", "a limit with an exponent")
 
 
 class Start(Case):

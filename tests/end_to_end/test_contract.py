@@ -15,7 +15,7 @@ ELSEWHERE = {
     "hand check": "needs no daemon: test_hand", "hand new": "half a minute: test_hand",
     "replay": "needs a run file: test_record", "export": "needs a run file: test_record", "video": "needs a run file: test_record",
     "experiment exploration": "minutes: test_experiment", "experiment rotation": "minutes: test_experiment",
-    "experiment zoo": "minutes: test_experiment", "experiment prediction": "minutes: test_experiment", "experiment paper": "an hour: test_experiment", "experiment noise-sweep": "minutes: test_experiment", "experiment merge": "needs shards: test_experiment",
+    "experiment zoo": "minutes: test_experiment_pairs", "experiment prediction": "minutes: test_experiment_pairs", "experiment paper": "an hour: test_experiment_paper", "experiment noise-sweep": "minutes: test_experiment", "experiment merge": "needs shards: test_experiment",
 }
 ENDLESS = {"events -f"}
 # The exit codes an example may have besides 0: the operation was carried out and did not succeed.

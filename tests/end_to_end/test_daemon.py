@@ -224,6 +224,32 @@ class Scripted(DaemonCase):
 
     ARGUMENTS = ["--speed", "max", "--seed", "5", "--paused"]
 
+    def test_pictures_that_cannot_be_are_refused_in_the_words_of_who_asked(self):
+        def refused(code, *words):
+            cause, hint = self.refused(code, "plot", *words, "-o", self.dir / "x.png")
+            for file in (str(self.dir), ".draft"):  # no file is to blame
+                self.assertNotIn(file, cause + hint)
+            return cause.removeprefix("regrasp: "), hint.removeprefix("  try: regrasp ").split("    (")[0].split()
+        self.json("record", "start", "run.mcap")
+        self.expect(0, "grasp")
+        self.expect(0, "step", "200", "--wait")
+        nothing = "nothing to draw: no finger held the object in these frames"
+        self.assertEqual(refused(5, "contacts"), (nothing, ["grasp", "--wait"]))
+        self.assertEqual(refused(5, "contacts", "--last", "0.1"), (nothing, ["plot", "contacts"]))
+        self.json("record", "stop")
+        run = self.dir / "out" / "run.mcap"
+        for words in (["contacts", run], ["contacts", run, "--last", "0.1"]):
+            self.assertEqual(refused(5, *words)[0], "run.mcap: " + nothing)
+        self.assertEqual(refused(2, "quality", run, run), ("quality shows one run, 2 are given; only comparison shows several", ["plot", "quality", "run.mcap"]))
+        self.assertEqual(refused(2, "incident", run)[1], ["plot", "quality", "run.mcap"])
+        for words in (["quality"], ["quality", run, "--last", "0.1"]):
+            cause, again = refused(2, *words, "--size", "88mm", "--dpi", "100")
+            self.assertRegex(cause, r"^88 mm at 100 dpi are a picture of 346 x \d+ pixels; allowed are 400 x 300 to 8000 x 8000, so 1\d\d to 1200 dpi$")
+            given = [run if word == "run.mcap" else word for word in again]
+            self.assertEqual(given[:len(words[:2]) + 1], ["plot", *words[:2]])
+            self.expect(0, *given, *words[2:], "-o", self.dir / "allowed.png")  # the dpi it names
+        self.assertRegex(refused(2, "quality", "--size", "300", "--dpi", "1200")[0], r"so 50 to 67\d dpi$")
+
     def hash_after(self, ticks):
         self.expect(0, "reset", "--seed", "5")
         self.expect(0, "grasp")

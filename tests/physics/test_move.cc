@@ -1,5 +1,5 @@
 // Local manipulation in closed loop, on the session: what `move` promises, each on one seed. How
-// far the hand reaches over seeds is measured by `claims move` (bench/claims.cc), not here.
+// far the hand reaches over seeds is measured by `claims move` (bench/claims), not here.
 
 #include <gtest/gtest.h>
 

@@ -21,7 +21,7 @@ class Methods:
     def checkpoint_restore(self, name: str, seed: int | None = None, reexecute: bool | None = None) -> Job:
         """Go on from a checkpoint: identically, or with another seed.
         name: letters, digits, - _ . ; at most 64, neither . nor - first.
-        seed: branch: sensor noise and later random choices follow this seed; 0 to 9007199254740992; left out: go on
+        seed: branch: sensor noise and later random choices follow this seed; 0 to 2**53; left out: go on
             identically.
         reexecute: execute the commands again from tick 0, rather than load the state; left out: false.
         Returns a Job.
@@ -65,7 +65,7 @@ class Methods:
             manipulability.
         estimator: how it estimates the gradient; secant is the rule as printed; one of least_squares, secant; left
             out: least_squares.
-        seed: seed of the random start direction; 0 to 9007199254740992; left out: the seed of the run.
+        seed: seed of the random start direction; 0 to 2**53; left out: the seed of the run.
         max_cycles: give up after so many cycles; 1 to 1000000; left out: parameter exploration.max_cycles.
         Returns a Job.
         """
@@ -86,14 +86,14 @@ class Methods:
 
     def job_cancel(self, id: int) -> dict:
         """End a job.
-        id: number of the job; 1 to 9007199254740992.
+        id: number of the job; 1 to 2**53.
         Returns the record of the job.
         """
         return self._ask("job.cancel", {"id": id})
 
     def job_get(self, id: int) -> dict:
         """The record of a job.
-        id: number of the job; 1 to 9007199254740992.
+        id: number of the job; 1 to 2**53.
         Returns the record of the job.
         """
         return self._ask("job.get", {"id": id})
@@ -106,7 +106,7 @@ class Methods:
 
     def job_wait(self, id: int, timeout_s: float | None = None) -> dict:
         """Wait until a job has ended; the only deferred answer.
-        id: number of the job; 1 to 9007199254740992.
+        id: number of the job; 1 to 2**53.
         timeout_s: answer with error -32004 after so long (wall clock) [s]; 0 to 1000000; left out: no limit.
         Returns the record of the job.
         """
@@ -269,7 +269,7 @@ class Methods:
 
     def reset(self, seed: int | None = None, object: str | None = None) -> dict:
         """Start a new run; parameters and noise levels stay.
-        seed: seed of the new run; 0 to 9007199254740992; left out: the present seed.
+        seed: seed of the new run; 0 to 2**53; left out: the present seed.
         object: another object, by name; left out: the present object.
         Returns seed, object, changed_parameters: {NAME: value} that stay, warnings [] (why this object cannot be
             grasped where it begins).

@@ -1,0 +1,59 @@
+#include "cli/hand/scenario_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "cli/hand/hand_command.h"
+
+namespace regrasp::hand {
+
+namespace fs = std::filesystem;
+
+void ScenarioFile::Check() const {
+  if (path_.extension() != ".toml")
+    throw Failure(ExitCode::kUsage,
+                  fmt::format("-o {}: a scenario file must end in .toml", path_.string()),
+                  "regrasp help hand new");
+  std::error_code ignored;
+  if (fs::exists(path_, ignored))
+    throw Failure(ExitCode::kIo, fmt::format("{}: exists; nothing is overwritten", path_.string()),
+                  "another name for -o, or remove the file");
+  const fs::path directory = path_.parent_path().empty() ? "." : path_.parent_path();
+  if (!fs::is_directory(directory, ignored))
+    throw Failure(ExitCode::kIo, fmt::format("{}: no such directory", directory.string()),
+                  "mkdir -p " + directory.string());
+}
+
+std::string ScenarioFile::NameOfObject(const std::string& object) const {
+  if (fs::path(object).extension() != ".urdf") return object;
+  const std::string relative = WayTo(object);
+  return relative.empty() ? fs::absolute(object).string() : relative;
+}
+
+std::string ScenarioFile::NameOfUrdf(const fs::path& urdf) const {
+  const std::string relative = WayTo(urdf);
+  if (relative == name() + ".urdf") return "";
+  return relative.empty() ? fs::absolute(urdf).string() : relative;
+}
+
+std::string ScenarioFile::WayTo(const fs::path& file) const {
+  std::error_code ignored;
+  const fs::path directory =
+      fs::absolute(path_.parent_path().empty() ? fs::path(".") : path_.parent_path(), ignored);
+  return fs::relative(fs::absolute(file, ignored), directory.lexically_normal(), ignored).string();
+}
+
+void ScenarioFile::Write(const std::string& text) const {
+  std::ofstream file(path_);
+  file << text;
+  file.close();
+  if (!file)
+    throw Failure(ExitCode::kIo,
+                  fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno)),
+                  "another place for -o");
+}
+
+}  // namespace regrasp::hand

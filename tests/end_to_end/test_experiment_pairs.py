@@ -1,0 +1,123 @@
+"""`regrasp experiment`: the same seeds under several settings, each as if it were alone."""
+
+import json
+import shlex
+import unittest
+
+from experiment_case import ExperimentCase
+from harness import SOURCE
+
+
+class Pairs(ExperimentCase):
+    """The same seeds under several settings."""
+
+    ONE = ["exploration", "--finger", "ring", "--seed", "5", "--rays", "0", "--workers", "1", "--models-dir", SOURCE / "models"]
+
+    def test_an_experiment_grows(self):
+        both = ["--estimator", "least_squares,secant"]
+        self.run_experiment(*self.ONE, *both, "-n", "3", "-o", self.dir / "at once")
+        self.run_experiment(*self.ONE, *both, "-n", "2", "-o", self.dir / "grown")
+        kept = (self.dir / "grown" / "trials.jsonl").read_bytes()
+        self.assertIn("2 of 3 are there already", self.run_experiment(*self.ONE, *both, "-n", "3", "-o", self.dir / "grown").stderr)
+        self.assertTrue((self.dir / "grown" / "trials.jsonl").read_bytes().startswith(kept))
+        self.assert_same_results("at once", "grown")
+        self.assertIn("seeds was 3, is 2", self.refused_experiment(5, *self.ONE, *both, "-n", "2", "-o", self.dir / "grown"))
+
+        # The differences are those of the rows, paired by seed.
+        (comparison,) = self.summary("grown")["comparisons"]
+        self.assertEqual((comparison["what"], comparison["base"], comparison["other"], comparison["pairs"]), ("estimator", "least_squares", "secant", 3))
+        final = {(row["estimator"], row["seed"]): float(row["phi_true_final"]) for row in self.rows("grown")}
+        differences = [final["secant", seed] - final["least_squares", seed] for seed in ("5", "6", "7")]
+        measure = comparison["measures"]["phi_true_final"]
+        self.assertAlmostEqual(measure["difference"], sum(differences) / 3, delta=1e-12)
+        self.assertGreaterEqual(measure["low"], min(differences) - 1e-12)
+        self.assertLessEqual(measure["high"], max(differences) + 1e-12)
+        # Of three signs alike one in four says as much; otherwise p is larger.
+        self.assertGreaterEqual(measure["p"], 0.25)
+        # Tables as a paper takes them, of a finished directory.
+        latex = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "latex", "-o", self.dir / "grown").stdout
+        self.assertEqual(latex.count("\\begin{tabular}"), latex.count("\\bottomrule"))
+        self.assertIn("least\\_squares", latex)
+        self.assertRegex(latex, r"[ (]\$-\$\d")  # a minus, where a hyphen would be printed
+        self.assertNotRegex(latex, r"[ (]-\d")
+        advice = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "markdown", "--precision", "0.05", "-o", self.dir / "grown").stdout
+        self.assertIn("| secant | least_squares |", advice)
+        self.assertIn("n for ±0.05", advice)
+
+    def test_a_sweep_makes_a_case_of_each_value(self):
+        self.run_experiment(*self.ONE, "-n", "1", "--set", "object.friction=0.7,0.8", "--set", "gravity=0,0,-9.81", "-o", self.dir / "sweep")
+        self.assertEqual([row["case"] for row in self.rows("sweep")], ["object.friction=0.7", "object.friction=0.8"])
+        (comparison,) = self.summary("sweep")["comparisons"]
+        self.assertEqual((comparison["base"], comparison["other"]), ("object.friction=0.7", "object.friction=0.8"))
+        plan = json.loads((self.dir / "sweep" / "experiment.json").read_text())
+        self.assertEqual(plan["parameters"]["object.friction=0.7"]["object.friction"], 0.7)
+        words = shlex.split(self.rows("sweep")[0]["command"])
+        words[words.index("-o") + 1] = self.dir / "single"
+        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.assertEqual(self.rows("single"), self.rows("sweep")[:1])
+        self.refused_experiment(2, *self.ONE, "--set", "object.friction=0.7,0.7", "-o", self.dir / "none")
+
+    def test_a_zoo_pairs_gaits_on_every_object(self):
+        words = ["zoo", "--objects", "egg,sphere", "-n", "1", "--turns", "0.05", "--models-dir", SOURCE / "models"]
+        self.run_experiment(*words, "-o", self.dir / "zoo")
+        self.assertEqual([row["case"] for row in self.rows("zoo")], ["egg, planned", "egg, returning", "sphere, planned", "sphere, returning"])
+        comparisons = self.summary("zoo")["comparisons"]
+        self.assertEqual([(c.get("case"), c["base"], c["other"], c["pairs"]) for c in comparisons],
+                         [(None, "egg, planned", "egg, returning", 1), (None, "sphere, planned", "sphere, returning", 1), ("all", "planned", "returning", 2)])
+        self.assertIn("'unicorn' is none of", self.refused_experiment(2, "zoo", "--objects", "unicorn", "-o", self.dir / "none"))
+
+    def test_a_prediction_looks_at_gaits_in_danger(self):
+        words = ["prediction", "--objects", "sphere", "--noise", "coarse", "-n", "1", "--turns", "0.1", "--models-dir", SOURCE / "models"]
+        self.run_experiment(*words, "-o", self.dir / "foretold")
+        self.assertEqual([row["case"] for row in self.rows("foretold")], ["sphere, as it is", "sphere, pushed", "sphere, slippery"])
+        self.assertNotIn("comparisons", self.summary("foretold"))
+        prediction = self.summary("foretold")["prediction"]
+        self.assertEqual(prediction["runs"], 3)
+        self.assertGreater(prediction["looks"], 30)
+        self.assertGreater(prediction["windows_holding"], 0)
+        for predictor in prediction["predictors"]:
+            self.assertLessEqual(0, predictor["low"])
+            self.assertLessEqual(predictor["low"], predictor["high"])
+        # What the run gave does not depend on being looked at.
+        words = shlex.split(self.rows("foretold")[0]["command"])
+        words[words.index("-o") + 1] = self.dir / "single"
+        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        for column in ("outcome", "end_tick", "angle_rad", "max_tilt_rad", "slips"):
+            self.assertEqual(self.rows("single")[0][column], self.rows("foretold")[0][column])
+
+
+class Cases(ExperimentCase):
+    TURN = ["rotation", "--angle", "15", "-n", "1", "--models-dir", SOURCE / "models"]
+    CASES = ["--case", "as it is:", "--case", "egg, pushed: object=egg push=0.5 object.mass_kg=0.05", "--case", "tilt=45"]
+
+    def test_cases_do_not_touch_each_other(self):
+        self.run_experiment(*self.TURN, *self.CASES, "--workers", "1", "-o", self.dir / "one")
+        self.run_experiment(*self.TURN, *self.CASES, "--workers", "2", "-o", self.dir / "two")
+        self.assert_same_results("one", "two")
+        rows = self.rows("one")
+        self.assertEqual([(row["case"], row["object"]) for row in rows], [("as it is", "sphere"), ("egg, pushed", "egg"), ("tilt=45", "sphere")])
+        self.assertEqual(len({row["state_hash"] for row in rows}), 3)
+        self.assertEqual([group["case"] for group in self.summary("one")["groups"]], [row["case"] for row in rows])
+        # A case that changes nothing is the experiment without cases; --tilt is the case.
+        for words, row in [([], rows[0]), (["--tilt", "45"], rows[2])]:
+            self.run_experiment(*self.TURN, *words, "-o", self.dir / ("alone" + "".join(words)))
+            (alone,) = self.rows("alone" + "".join(words))
+            self.assertEqual(alone["state_hash"], row["state_hash"])
+        words = shlex.split(rows[1]["command"])
+        words[words.index("-o") + 1] = self.dir / "single"
+        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.assertEqual(self.rows("single"), [rows[1]])
+
+    def test_bad_cases_make_no_directory(self):
+        out = ["--models-dir", SOURCE / "models", "-o", self.dir / "none"]
+        for words, part in [(["rotation", "--case", "a: tilt"], "'tilt' is not NAME=VALUE"), (["rotation", "--case", ": tilt=3"], "no name"),
+                            (["rotation", "--case", "a:", "--case", "a: tilt=3"], "two cases have the name 'a'"),
+                            (["exploration", "--case", "a: push=1"], "push and turns are for rotations"), (["rotation", "--push", "-1"], "--push")]:
+            with self.subTest(words):
+                self.assertIn(part, self.refused_experiment(2, *words, *out))
+        self.assertIn("gait.mod", self.refused_experiment(6, "rotation", "--case", "a:", "--case", "b: gait.mod=3", *out))
+        self.assertFalse((self.dir / "none").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
