@@ -43,7 +43,7 @@ struct Arg {
 struct Invocation {
   const struct CommandSpec* command = nullptr;
   Json params;                                    ///< of the method, in SI units; an object
-  std::map<std::string, std::string> local = {};  ///< arguments that are not on the wire, as typed
+  std::map<std::string, std::string> local = {};  ///< those not on the wire, as typed; no units
   bool Has(const std::string& key) const { return local.contains(key); }
   std::string Text(const std::string& key, const std::string& otherwise = "") const {
     return Has(key) ? local.at(key) : otherwise;

@@ -8,6 +8,7 @@
 #include "cli/client/errors.h"
 #include "cli/grammar/flags.h"
 #include "cli/grammar/grammar.h"
+#include "cli/grammar/units.h"
 #include "cli/grammar/values.h"
 #include "core/common/nearest_name.h"
 
@@ -293,6 +294,8 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
       const Json value = flag ? Json(given.flag) : ToWire(arg, given.text, scope);
       if (arg.wire) {
         invocation.params[arg.key] = value;
+      } else if (arg.kind == ArgKind::kNumber && HasUnit(given.text)) {
+        invocation.local[arg.key] = fmt::format("{}", value.get<double>() / arg.scale);
       } else {
         invocation.local[arg.key] = given.text;
       }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cli/client/errors.h"
 #include "cli/grammar/units.h"
@@ -27,6 +28,16 @@ void CheckRange(const Arg& arg, double typed) {
                                            least, unit)
                              : fmt::format("{} {}: allowed are {} to {}{}", ArgName(arg), typed,
                                            least, LimitText(arg.max / arg.scale), unit));
+}
+
+/// Of a bare number: the key on the wire tells it, or the word that stands for the value.
+std::string_view UnitOf(const Arg& arg) {
+  constexpr std::pair<std::string_view, std::string_view> kMetavars[] = {
+      {"DEG", "deg"}, {"MM", "mm"}, {"S", "s"}, {"HZ", "Hz"}};
+  if (const std::string_view unit = UnitOfKey(arg.key); !unit.empty()) return unit;
+  for (const auto& [metavar, unit] : kMetavars)
+    if (arg.metavar == metavar) return unit;
+  return "";
 }
 
 }  // namespace
@@ -62,7 +73,7 @@ Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
       return static_cast<std::int64_t>(typed);
     }
     case ArgKind::kNumber: {
-      const double typed = ParseQuantity(text, name, UnitOfKey(arg.key));
+      const double typed = ParseQuantity(text, name, UnitOf(arg));
       CheckRange(arg, typed);
       return typed * arg.scale;
     }
@@ -70,7 +81,7 @@ Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
       return ParseParameterValue(text);
     case ArgKind::kVector3: {
       Json vector = Json::array();
-      for (const double typed : ParseQuantities(text, 3, name, UnitOfKey(arg.key))) {
+      for (const double typed : ParseQuantities(text, 3, name, UnitOf(arg))) {
         CheckRange(arg, typed);
         vector.push_back(typed * arg.scale);
       }

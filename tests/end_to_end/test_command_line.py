@@ -70,6 +70,16 @@ class Words(Case):
         self.assertIn("allowed are 0 to 2^53", self.refused(2, "explore", "ring", "--seed", "-1")[0])
         self.assertIn("--max-cycles 2000000: allowed are 1 to 1000000", self.refused(2, "explore", "ring", "--max-cycles", "2000000")[0])
 
+    def test_units_of_options_that_are_not_on_the_wire(self):
+        for words, told in [
+            (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "50s"], "allowed are mm, cm, m, um"),
+            (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "1cm"], "--object-size 10"),
+            (["experiment", "rotation", "-o", "none", "--tilt", "1turn"], "--tilt 360: allowed are 0 to 180 DEG"),
+            (["experiment", "rotation", "-o", "none", "--tilt", "3mm"], "allowed are deg, rad, turn"),
+        ]:
+            with self.subTest(words):
+                self.assertIn(told, self.refused(2, *words)[0])
+
     def test_names_of_commands_may_be_arguments(self):
         # Each gets as far as looking for the daemon: the words were understood.
         for words in [["watch", "status"], ["noise", "preset", "off"], ["call", "status"], ["plot", "quality"], ["param", "get", "status"],
