@@ -27,7 +27,7 @@ class DiskFaults(Case):
         failures = []
 
         def ask(*words):
-            done = self.regrasp("--json", *words)
+            done = self.regrasp("--timeout", HANG_S, "--json", *words)
             self.assertIn(done.returncode, (0, 5, 6, 74), f"{call} {number}: {words}: {done.stdout}{done.stderr}")
             if done.returncode:
                 failures.append(words)
