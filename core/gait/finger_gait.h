@@ -86,6 +86,10 @@ class FingerGait {
     return phase_ != GaitPhase::kIdle && phase_ != GaitPhase::kDone && phase_ != GaitPhase::kFailed;
   }
   bool stopped() const { return stop_; }
+  /// Has come to a standstill: more is to be counted on than is safe.
+  bool dares(const GaitParameters& parameters) const {
+    return active() && idle_cycles_ >= parameters.dare_cycles;
+  }
   /// The finger that regrasps, or -1.
   int finger() const { return phase_ == GaitPhase::kRegrasp ? regrasp_.finger() : -1; }
   const Regrasp& regrasp() const { return regrasp_; }

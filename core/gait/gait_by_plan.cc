@@ -81,7 +81,8 @@ double FingerGait::MarginNeeded(const ControlTick& tick, int finger) const {
 }
 
 double FingerGait::Grip(const ControlTick& tick) const {
-  const bool pinch = planned(tick) && finger() >= 0 && order_.back().finger == finger();
+  const bool pinch = planned(tick) && finger() >= 0 && order_.back().finger == finger() &&
+                     tick.control.friction_estimate >= tick.gait.opposing_friction;
   return pinch ? std::max(tick.gait.grip_force, tick.gait.opposing_grip) : tick.gait.grip_force;
 }
 

@@ -72,7 +72,8 @@ struct GaitParameters {
   double skip_distance = 0.0012;  ///< a finger this near to its target stays [m]
   // Leaving and coming back.
   double grip_force = 2.0;     ///< preferred normal force of a holding finger, in `move` too [N]
-  double opposing_grip = 0;    ///< of the others while the opposing finger regrasps, if larger [N]
+  double opposing_grip = 3.0;  ///< of the others while the opposing finger regrasps, if larger [N]
+  double opposing_friction = 0.6;  ///< ... where so much friction is counted on, at least
   double transfer_s = 0.03;    ///< load transfer before a finger leaves, and after it is back [s]
   double hop_force = 0.05;     ///< its force when it leaves [N]
   double lift_height = 0.003;  ///< along the outward normal [m]
@@ -112,7 +113,8 @@ struct GaitParameters {
   double progress = 0.02;         ///< a cycle that turns the object less has not turned it [rad]
   int idle_cycles = 3;            ///< by the table: such cycles in a row before it gives up
   int patience = 20;              ///< the same with planned landings
-  int misses = 15;                ///< ... and landings in a row that found no surface
+  int dare_cycles = 1;  ///< plan: after so many all of the friction felt counts, feel_most or not
+  int misses = 15;      ///< ... and landings in a row that found no surface
   double lead_max =
       0.35;  ///< most that a target is turned back beyond `lead` for a finger at its limit [rad]
   double found_share = 0.5;   ///< weight of the newest exploration's end

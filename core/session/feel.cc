@@ -33,9 +33,10 @@ void Session::Impl::FeelFriction() {
 void Session::Impl::CountOn() {
   control = parameters.control;
   felt.Use(parameters.shape);
-  if (parameters.gait.plan && parameters.gait.friction_share > 0)
-    control.friction_estimate =
-        felt_friction.Counted(parameters.gait.friction_share, parameters.control);
+  if (!parameters.gait.plan || parameters.gait.friction_share <= 0) return;
+  const Activity* running = Running(state);
+  if (running && running->Dares(parameters.gait)) control.feel_most = 1;
+  control.friction_estimate = felt_friction.Counted(parameters.gait.friction_share, control);
 }
 
 }  // namespace regrasp

@@ -74,7 +74,7 @@ class Words(Case):
         for words, told in [
             (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "50s"], "allowed are mm, cm, m, um"),
             (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "1cm"], "--object-size 10"),
-            (["experiment", "rotation", "-o", "none", "--tilt", "1turn"], "--tilt 360: allowed are 0 to 180 DEG"),
+            (["experiment", "rotation", "-o", "none", "--tilt", "1turn"], "--tilt 360: allowed are -180 to 180"),
             (["experiment", "rotation", "-o", "none", "--tilt", "3mm"], "allowed are deg, rad, turn"),
         ]:
             with self.subTest(words):

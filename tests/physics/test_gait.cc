@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -155,14 +156,16 @@ TEST(Rotate, ExploresFromWhereItLandsWhileTheObjectTurnsOn) {
   EXPECT_EQ(paper.turned, 0);
 }
 
-// While the opposing finger is away, and only then, the others hold tighter.
+// While the opposing finger is away, and only then, the others hold tighter; not where they may
+// slip.
 TEST(Rotate, HoldsTighterWhileTheOpposingFingerIsAway) {
   struct Grip {
     double with = 0, without = 0;  // mean normal force of the middle finger [N]
   };
-  const auto turn = [](double grip) {
+  const auto turn = [](double grip, double from_friction = 0) {
     SessionConfig config = Config(1);
     config.parameters.gait.opposing_grip = grip;
+    config.parameters.gait.opposing_friction = from_friction;
     const auto finger = [&](std::string_view name) {
       int i = 0;
       while (config.model.hand.fingers[i].name != name) ++i;
@@ -187,6 +190,30 @@ TEST(Rotate, HoldsTighterWhileTheOpposingFingerIsAway) {
   const Grip same = turn(2), more = turn(4);
   EXPECT_GT(more.without, 1.2 * same.without);
   EXPECT_LT(more.with, 1.2 * same.with);
+  EXPECT_LT(turn(4, 1).without, 1.2 * same.without);  // no more than 0.7 is counted on
+}
+
+// With so little friction no finger may leave: what was felt counts once nothing else has helped.
+TEST(Rotate, CountsOnAllOfTheFrictionFeltAtAStandstill) {
+  const auto most_counted = [](int dare_cycles) {
+    SessionConfig config = Config(1);
+    const double before_felt = config.parameters.control.friction_estimate;
+    config.parameters.control.feel_most = 0.2;
+    config.parameters.gait.dare_cycles = dare_cycles;
+    Session session(std::move(config));
+    Grasp(session);
+    session.Apply(Turn(180, -Vector3d::UnitZ()));
+    double most = 0;
+    Frame frame;
+    for (int tick = 0; tick < 20000 && session.TakeFinishedJobs().empty(); ++tick) {
+      session.Tick();
+      session.Snapshot(&frame, false);
+      if (frame.friction_counted != before_felt) most = std::max(most, frame.friction_counted);
+    }
+    return most;
+  };
+  EXPECT_GT(most_counted(1), 0.6);
+  EXPECT_EQ(most_counted(1000), 0.2);
 }
 
 // About this axis the fingertips move along the row of the fingers: the one at its limit must leave

@@ -65,6 +65,8 @@ class Activity {
   virtual ActivityStep Stop(const ActivityContext& context) = 0;
   /// The object is lost: what the job's record has to say about it.
   virtual void Dropped(const ActivityContext&) {}
+  /// Whether all of the friction felt counts, even above control.feel_most.
+  virtual bool Dares(const GaitParameters&) const { return false; }
   /// Joint torques in addition to the controller's, in a tick in which Update has run [N m].
   virtual void AddTorque(const ActivityContext&, JointVector*) const {}
   /// Its part of a frame; `frame` has everything else already.

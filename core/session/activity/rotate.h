@@ -12,6 +12,7 @@ class RotateActivity : public Activity {
   ActivityStep Update(const ActivityContext& context) override;
   ActivityStep Stop(const ActivityContext& context) override;
   void Dropped(const ActivityContext& context) override;
+  bool Dares(const GaitParameters& parameters) const override { return gait_.dares(parameters); }
   void Record(const ActivityContext& context, Frame* frame) const override;
   template <typename V>
   void Fields(V& v) {
