@@ -86,7 +86,8 @@ class FingerGait {
     return phase_ != GaitPhase::kIdle && phase_ != GaitPhase::kDone && phase_ != GaitPhase::kFailed;
   }
   bool stopped() const { return stop_; }
-  /// Has come to a standstill: more is to be counted on than is safe.
+  /// gait.dare_cycles cycles in a row have not turned the object: more is to be counted on than is
+  /// safe. The round at rest with which a gait begins is such a cycle.
   bool dares(const GaitParameters& parameters) const {
     return active() && idle_cycles_ >= parameters.dare_cycles;
   }

@@ -113,7 +113,8 @@ struct GaitParameters {
   double progress = 0.02;         ///< a cycle that turns the object less has not turned it [rad]
   int idle_cycles = 3;            ///< by the table: such cycles in a row before it gives up
   int patience = 20;              ///< the same with planned landings
-  int dare_cycles = 1;  ///< plan: after so many all of the friction felt counts, feel_most or not
+  int dare_cycles = 1;  ///< plan: after so many (the first round, at rest, is one) felt friction
+                        ///< counts beyond control.feel_most
   int misses = 15;      ///< ... and landings in a row that found no surface
   double lead_max =
       0.35;  ///< most that a target is turned back beyond `lead` for a finger at its limit [rad]

@@ -58,7 +58,7 @@ TEST(Rotate, EveryFingerComesBackEveryTime) {
   SessionConfig config = Config(30502);
   config.parameters.gravity_W =
       config.parameters.gravity_W.norm() * Vector3d(0, std::cos(kTilt), std::sin(kTilt));
-  config.parameters.control.feel_most = 1;  // margins of about the same friction are compared
+  config.parameters.gait.dare_cycles = 1000;  // so that both margins are of the same friction
   Session session(std::move(config));
   ASSERT_NO_FATAL_FAILURE(Grasp(session));
   const auto margin_after = [&](double degrees) {
