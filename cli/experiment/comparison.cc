@@ -183,6 +183,7 @@ std::vector<Measure> MeasuresOf(const Plan& plan) {
   if (plan.rays > 0) {
     measures.push_back({"near_best", "within 5 % of best %", 100, 0, true});
     measures.push_back({"share_of_best", "share of best", 1, 3, false});
+    measures.push_back({"near_best_s", "s to 95 % of best", 1, 2, false});
   }
   measures.push_back({"phi_true_final", "φ at the end", 1, 3, false});
   measures.push_back({"phi_true_gain", "φ gain %", 100, 1, false});

@@ -31,6 +31,7 @@ Columns ColumnsOf(const Plan& plan) {
   if (plan.rays > 0) {
     columns.counts.push_back("near_best");
     columns.quantiles.push_back("share_of_best");
+    columns.quantiles.push_back("near_best_s");
   }
   columns.counts.push_back("converged");
   return columns;

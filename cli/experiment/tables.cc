@@ -154,7 +154,7 @@ TableData GroupTable(const Json& summary) {
                            ">at most", ">tilt at most deg"});
   else
     Append(&table.titles, {"φ rose"});
-  if (map) Append(&table.titles, {"within 5 % of best", ">share of best"});
+  if (map) Append(&table.titles, {"within 5 % of best", ">share of best", ">s to 95 % of best"});
   if (!rotation) Append(&table.titles, {">gain %"});
   Append(&table.titles, {">dropped", rotation ? ">fault" : ">refused"});
   for (const auto& group : groups) {
@@ -177,7 +177,9 @@ TableData GroupTable(const Json& summary) {
               most("max_position_error_m", 2, 1e3), most("max_tilt_rad", 1, 180 / M_PI)});
     else
       Append(&cells, {Share(counts.at("rose"), n)});
-    if (map) Append(&cells, {Share(counts.at("near_best"), n), median("share_of_best", 3, 1)});
+    if (map)
+      Append(&cells, {Share(counts.at("near_best"), n), median("share_of_best", 3, 1),
+                      median("near_best_s", 2, 1)});
     if (!rotation) Append(&cells, {median("phi_true_gain", 1, 100)});
     Append(&cells, {number("dropped"), number(rotation ? "fault" : "refused")});
     table.rows.push_back(std::move(cells));

@@ -15,7 +15,7 @@
 namespace regrasp::cli {
 namespace {
 
-constexpr std::int64_t kExploreLimit = 60000;  // [ticks]
+constexpr std::int64_t kExploreLimit = 60000, kPhiLook = 10;  // [ticks]
 constexpr std::int64_t kRotateChunk = 1000, kLookChunk = 100;
 constexpr std::int64_t kLongestWatched = 300000;  // of a turn that is looked at
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
@@ -79,15 +79,25 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
               {"criterion", plan.CriterionOf(unit.which)},
               {"estimator", estimator}});
   row.update(Begun(unit, status, grasp));
-  Json record, moved;
+  Json record, moved, near_best_s;
+  // The truth tells manipulability only.
+  const bool timed = map && map->rays > 0 && plan.CriterionOf(unit.which) == "manipulability";
   if (Done(grasp)) {
     const Json before = ObjectPlace(daemon);
-    record = daemon->Run("explore",
-                         {{"finger", unit.subject},
-                          {"criterion", plan.CriterionOf(unit.which)},
-                          {"estimator", estimator},
-                          {"seed", unit.seed}},
-                         kExploreLimit, kExploreLimit);
+    const Json begin = At(status, "time_s");
+    record =
+        daemon->Run("explore",
+                    {{"finger", unit.subject},
+                     {"criterion", plan.CriterionOf(unit.which)},
+                     {"estimator", estimator},
+                     {"seed", unit.seed}},
+                    timed ? kPhiLook : kExploreLimit, kExploreLimit, [&] {
+                      if (!timed || !near_best_s.is_null()) return;
+                      const Json truth = daemon->Call("truth");
+                      const Json& finger = truth.at("fingers").at(unit.subject);
+                      if (finger.at("manipulability").get<double>() >= kSuccessShare * map->best)
+                        near_best_s = truth.at("time_s").get<double>() - begin.get<double>();
+                    });
     daemon->Step(kHoldTicks);
     status = daemon->Call("status");
     row["outcome"] = Outcome(record, Plain(At(status, "state")));
@@ -110,6 +120,7 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
     row["phi_best_distance_m"] = known ? Json(map->distance_m) : Json();
     row["share_of_best"] = known && done ? Json(to / map->best) : Json();
     row["near_best"] = known && done && to >= kSuccessShare * map->best;
+    row["near_best_s"] = near_best_s;
   }
   row["path_length_m"] = slid ? At(record, "path_length_m") : Json();
   row["object_moved_m"] = moved;

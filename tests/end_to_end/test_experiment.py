@@ -93,6 +93,8 @@ class Results(ExperimentCase):
             self.assertLess(float(row["phi_true_final"]), 1.05 * float(row["phi_best"]))
             self.assertEqual(row["near_best"] == "true", float(row["phi_true_final"]) >= 0.95 * float(row["phi_best"]))
             self.assertLess(float(row["phi_best_distance_m"]), 0.0095)
+            lasted = 1e-3 * (int(row["end_tick"]) - int(row["start_tick"]))
+            self.assertTrue(0 < float(row["near_best_s"]) < lasted, row["near_best_s"])
         with open(self.dir / "map" / "maps.csv", newline="") as file:
             samples = list(csv.DictReader(file))
         self.assertEqual({sample["ray"] for sample in samples}, set(map(str, range(8))))
