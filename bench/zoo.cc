@@ -2,7 +2,7 @@
 //   zoo [--hand NAME|FILE] [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T]
 //       [--axis X,Y,Z] [--tilt DEG] [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N]
 //       [--rows] [--events]
-//       [--setting 'NAME: PARAMETER=VALUE ...'] ...
+//       [--setting 'NAME: PARAMETER=VALUE ... stepper=fast|exact|round'] ...
 // `zoo` (the default): every object of models/objects whose name begins with zoo_, and the cubes.
 // A trial is completed when its job is done and the object has truly turned by the angle asked for,
 // within 5 degrees. VALUE as `regrasp param set` takes it: exploring, true, 0.25.
@@ -37,6 +37,7 @@ namespace {
 struct Setting {
   std::string name;
   std::vector<ParameterSetting> values;
+  Stepper stepper = Stepper::kFast;
 };
 
 struct Options {
@@ -64,7 +65,15 @@ Setting ParseSetting(const std::string& text) {
   const auto colon = text.find(':');
   Setting setting{text.substr(0, colon), {}};
   std::istringstream words(colon == std::string::npos ? "" : text.substr(colon + 1));
-  for (std::string word; words >> word;) setting.values.push_back(ReadSetting(word));
+  for (std::string word; words >> word;) {
+    if (!word.starts_with("stepper=")) {
+      setting.values.push_back(ReadSetting(word));
+      continue;
+    }
+    const auto stepper = StepperNamed(word.substr(word.find('=') + 1));
+    if (!stepper) throw std::invalid_argument("zoo: " + word + ": fast, exact or round");
+    setting.stepper = *stepper;
+  }
   return setting;
 }
 
@@ -75,6 +84,7 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
   config.seed = seed;
+  config.world.stepper = setting.stepper;
   if (o.tilt >= 0) {
     const double t = o.tilt * M_PI / 180;
     config.parameters.gravity_W = 9.81 * Vector3d(0, std::cos(t), std::sin(t));

@@ -18,12 +18,11 @@ namespace regrasp {
 namespace {
 
 StepperChoice StepperFor(const std::string& word, const SessionConfig& session) {
-  if (word != "auto")
-    return {word == "exact" ? Stepper::kExact : Stepper::kFast, "as the configuration says"};
+  if (const auto stepper = StepperNamed(word)) return {*stepper, "as the configuration says"};
   StepperChoice choice = ChooseStepper(session.model, session.world);
   const bool fast = choice.stepper == Stepper::kFast;
   spdlog::log(fast ? spdlog::level::debug : spdlog::level::warn, "stepper {}: {}",
-              fast ? "fast" : "exact", choice.reason);
+              Name(choice.stepper), choice.reason);
   return choice;
 }
 

@@ -146,9 +146,9 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
       TextArg("case", "--case", "'NAME: KEY=VALUE ...'",
               "settings to compare: object, tilt, push, turns, criterion, parameters; repeatable");
   cases.repeated = true;
-  Arg stepper =
-      TextArg("stepper", "--stepper", "NAME", "fast, or exact: the slow reference", "fast");
-  stepper.values = {"fast", "exact"};
+  Arg stepper = TextArg("stepper", "--stepper", "NAME",
+                        "fast; exact: the slow reference; round: friction cone", "fast");
+  stepper.values = {"fast", "exact", "round"};
   for (const Arg& arg :
        {TextArg("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
         Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,

@@ -41,7 +41,7 @@ std::vector<Arg> DaemonArgs() {
       arg("hand", "NAME|FILE", "hand model"),
       arg("object", "NAME|FILE", "object model"),
       arg("noise", "PRESET", "sensor noise", "paper"),
-      arg("stepper", "NAME", "fast, exact (the slow reference), or auto: what suits the hand",
+      arg("stepper", "NAME", "fast, exact (slow reference), round (fast, friction cone), or auto",
           "auto"),
       flag("paused", "begin with the clock stopped"),
       arg("models-dir", "DIR", "where models are looked for first"),

@@ -216,7 +216,7 @@ Answer CheckHand(const Options& options) {
   const Loaded loaded = Load(options);
   const HandModel& hand = loaded.model.hand;
   const StepperChoice choice = ChooseStepper(loaded.model, {});
-  const char* stepper = choice.stepper == Stepper::kFast ? "fast" : "exact";
+  const std::string_view stepper = Name(choice.stepper);
   const int own = OwnContacts(loaded.model);
   const std::vector<std::string> warnings = Warnings(loaded, own);
   double mass = 0;

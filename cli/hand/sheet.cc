@@ -67,7 +67,7 @@ std::vector<std::string> Sheet::Remarks() const {
 
 Answer Sheet::Tell() const {
   const BallGrasp& g = best.grasp;
-  const char* stepper = best.choice.stepper == Stepper::kFast ? "fast" : "exact";
+  const std::string_view stepper = Name(best.choice.stepper);
   const std::vector<std::string> remarks = Remarks();
   Answer answer;
   Json fingers = Json::array();

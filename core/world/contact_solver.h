@@ -8,7 +8,10 @@
 ///   motion.
 ///
 /// These are the equations of ODE's contact joints: a spring and damper along the normal, the
-/// friction pyramid across it.
+/// friction pyramid across it. With the friction cone instead, the bound is on the two friction
+/// rows r and s of a contact together,
+///
+///   cone:      |(f_r, f_s)| <= mu f_normal(r), and against the motion where at the bound.
 ///
 /// Method: projected Gauss-Seidel in turn with direct solutions for the rows that are not at a
 /// bound [Silcowitz, Niebe, Erleben, "Projected Gauss-Seidel subspace minimization method for
@@ -43,7 +46,8 @@ class ContactSolver {
   int rows() const { return static_cast<int>(rate.size()); }
 
   /// Starts from the forces in `force`. Returns the sweeps it took.
-  int Solve(double friction, const ContactSolverLimits& limits) {
+  int Solve(double friction, bool cone, const ContactSolverLimits& limits) {
+    cone_ = cone;
     for (int r = 0; r < rows(); ++r) inverse_[r] = 1.0 / (A(r, r) + softness[r]);
     int sweeps = 0;
     bool settled = rows() == 0;
@@ -60,7 +64,8 @@ class ContactSolver {
   Vector rate;      ///< velocity without the forces, minus the wanted one [m/s]
   Vector force;     ///< in: a guess; out: the solution [N]
   Vector softness;  ///< ODE's cfm [m/(N s)]
-  Eigen::Matrix<int, Eigen::Dynamic, 1, 0, kMaxRows, 1> normal;  ///< friction: its normal row; -1
+  /// Of a friction row: its normal row r, the friction rows being r + 1 and r + 2; -1: of a normal.
+  Eigen::Matrix<int, Eigen::Dynamic, 1, 0, kMaxRows, 1> normal;
 
  private:
   static constexpr int kMaxDirect = 24;        // rows; beyond, sweeps are cheaper
@@ -69,24 +74,40 @@ class ContactSolver {
 
   /// One sweep; returns the largest change of a force [N].
   double Sweep(double friction) {
-    const int n = rows();
     double change = 0;
-    for (int r = 0; r < n; ++r) {
-      const double before = force[r];
-      double residual = rate[r] + softness[r] * before;
-      const double* a = A.data() + static_cast<std::ptrdiff_t>(r) * n;
-      for (int s = 0; s < n; ++s) residual += a[s] * force[s];
-      double now = before - residual * inverse_[r];
-      if (normal[r] < 0) {
-        now = now > 0 ? now : 0;
-      } else {
-        const double bound = friction * force[normal[r]];
-        now = now > bound ? bound : now < -bound ? -bound : now;
-      }
+    const auto set = [&](int r, double now) {
+      change = std::max(change, std::abs(now - force[r]));
       force[r] = now;
-      change = std::max(change, std::abs(now - before));
+    };
+    for (int r = 0; r < rows(); ++r) {
+      double now = force[r] - Speed(r) * inverse_[r];
+      if (normal[r] < 0) {
+        set(r, now > 0 ? now : 0);
+        continue;
+      }
+      const double bound = friction * force[normal[r]];
+      if (!cone_) {
+        set(r, now > bound ? bound : now < -bound ? -bound : now);
+        continue;
+      }
+      // One step for both, so that the force at the bound is against the motion.
+      const double step = std::min(inverse_[r], inverse_[r + 1]);
+      now = force[r] - Speed(r) * step;
+      const double across = force[r + 1] - Speed(r + 1) * step;
+      const double size = std::hypot(now, across), share = size > bound ? bound / size : 1;
+      set(r, share * now);
+      set(++r, share * across);
     }
     return change;
+  }
+
+  /// The left side of a row's equation with the present forces [m/s].
+  double Speed(int r) const {
+    const int n = rows();
+    double speed = rate[r] + softness[r] * force[r];
+    const double* a = A.data() + static_cast<std::ptrdiff_t>(r) * n;
+    for (int s = 0; s < n; ++s) speed += a[s] * force[s];
+    return speed;
   }
 
   /// Solves for the rows that the present forces show to be free, with friction at its bound
@@ -101,8 +122,9 @@ class ContactSolver {
       } else {
         const double bound = friction * force[normal[r]];
         if (!(bound > 0)) continue;
-        if (std::abs(force[r]) >= kAtBound * bound) {
-          slip_[r] = force[r] > 0 ? friction : -friction;
+        const double size = cone_ ? std::hypot(force[r], force[OtherOf(r)]) : std::abs(force[r]);
+        if (size >= kAtBound * bound) {
+          slip_[r] = friction * (force[r] / size);
           continue;
         }
       }
@@ -126,6 +148,9 @@ class ContactSolver {
       if (slip_[r] != 0) force[r] = slip_[r] * force[normal[r]];
     return true;
   }
+
+  /// The other friction row of its contact.
+  int OtherOf(int r) const { return r == normal[r] + 1 ? r + 1 : r - 1; }
 
   /// Gauss elimination with row exchange of the first n rows of system_, right side in column n.
   bool Eliminate(int n) {
@@ -154,6 +179,7 @@ class ContactSolver {
     return true;
   }
 
+  bool cone_ = false;
   std::array<double, kMaxRows> inverse_, slip_;
   std::array<int, kMaxRows> position_;
   std::array<int, kMaxDirect> row_of_;

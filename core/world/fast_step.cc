@@ -140,7 +140,8 @@ const KinematicsData& FastStep::Advance(const Load& load,
   MakeObjectRows(hits, *state);
   MakeLinkRows(link_hits, object_row_count_);
   FillMatrix();
-  sweeps_ = solver_.Solve(load.friction, config_.contact_solver);
+  sweeps_ =
+      solver_.Solve(load.friction, config_.stepper == Stepper::kRound, config_.contact_solver);
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const auto& axes = axes_W_[i];
     Vector3d& force_W = state->contacts[i].force_W;

@@ -110,7 +110,7 @@ World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
   state.p_WO = X_WO0.translation();
   state.q_WO = Quaterniond(X_WO0.linear()).normalized();
   const KinematicsData& links = fast.SetPosture(state.q);
-  if (config.stepper == Stepper::kFast) ode.SetPoses(links, state);
+  if (config.stepper != Stepper::kExact) ode.SetPoses(links, state);
   const std::vector<Isometry3d> X_WL(
       links.X_WL.begin(), links.X_WL.begin() + static_cast<std::ptrdiff_t>(hand.links.size()));
   start_overlap = DeepestOverlap(hand, X_WL, object, X_WO0);
@@ -145,7 +145,7 @@ void World::Impl::CheckState() const {
   for (int i = 0; i < hand.num_joints(); ++i) good = good && sane(state.qdot[i]);
   for (int k = 0; k < 3; ++k) good = good && sane(state.v_WO[k]) && sane(state.w_WO[k]);
   if (!good)
-    throw WorldFault(config.stepper == Stepper::kFast
+    throw WorldFault(config.stepper != Stepper::kExact
                          ? "the simulation has diverged; try --stepper exact, or a larger "
                            "armature_kg_m2 in the hand's scenario"
                          : "the simulation has diverged; try --stepper fast, or a larger "
@@ -209,6 +209,16 @@ void World::Impl::Advance() {
                    object_hits, link_hits, &state);
   CheckState();
   ode.SetPoses(links, state);
+}
+
+std::string_view Name(Stepper stepper) {
+  return stepper == Stepper::kExact ? "exact" : stepper == Stepper::kRound ? "round" : "fast";
+}
+
+std::optional<Stepper> StepperNamed(std::string_view name) {
+  for (const Stepper stepper : {Stepper::kFast, Stepper::kExact, Stepper::kRound})
+    if (name == Name(stepper)) return stepper;
+  return std::nullopt;
 }
 
 World::World(const HandModel& hand, const ObjectModel& object, const WorldConfig& config,

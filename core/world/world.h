@@ -8,6 +8,8 @@
 /// user's push (SetPush) nothing but contact friction and gravity acts on the object.
 
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include "core/common/fields.h"
 #include "core/common/frames.h"
@@ -22,7 +24,11 @@ namespace regrasp {
 enum class Stepper {
   kFast,   ///< the same equations in joint coordinates (fast_step.h)
   kExact,  ///< dWorldStep: the reference
+  kRound,  ///< the fast step with the friction cone instead of ODE's pyramid, which is up to √2 as
+           ///< strong along its diagonals
 };
+std::string_view Name(Stepper stepper);  ///< "fast", "exact", "round"
+std::optional<Stepper> StepperNamed(std::string_view name);
 
 struct WorldConfig {
   double dt = 1e-3;  ///< step [s]

@@ -45,7 +45,7 @@ struct DaemonConfig {
   int max_commands = 200'000;
   std::string log_level = "info";   ///< trace debug info warn error off
   std::string log_format = "text";  ///< text or json
-  std::string stepper = "auto";     ///< fast, exact or auto
+  std::string stepper = "auto";     ///< fast, exact, round or auto
   /// Values for the parameter table, in the order they were set.
   std::vector<std::pair<std::string, Vector3d>> parameters;
   /// Where the values that are not built in come from: "FILE:LINE", "$REGRASP_SEED", "--seed"; by

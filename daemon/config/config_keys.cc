@@ -97,7 +97,7 @@ constexpr std::array kKeys = {
     TextKey<&C::log_level>("log_level", "LEVEL", "trace, debug, info, warn, error or off", true),
     TextKey<&C::log_format>("log_format", "FORMAT", "text or json, on standard error"),
     TextKey<&C::stepper>("stepper", "NAME",
-                         "fast, exact (the slow reference), or auto: what suits the hand"),
+                         "fast, exact (slow reference), round (fast, friction cone), or auto"),
 };
 
 void CheckWord(const std::string& where, std::string_view key, const std::string& value,

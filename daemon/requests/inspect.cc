@@ -106,7 +106,7 @@ Outcome Identity(Service& service, const Params&, Client&) {
     return Json{{"name", name}, {"hash", HashText(hash)}};
   };
   return {.result = {{"build", BuildIdentity()},
-                     {"stepper", session.world.stepper == Stepper::kExact ? "exact" : "fast"},
+                     {"stepper", Name(session.world.stepper)},
                      {"models",
                       {{"scenario", named(model.scenario.name, hashes.scenario)},
                        {"hand", named(model.hand.name, hashes.hand)},

@@ -38,11 +38,10 @@ Json UntilTimes(const Service& service) {
 
 Json UntilCounts(const Service& service) {
   const Frame& frame = service.newest().frame;
-  const bool fast = service.config().control.session.world.stepper == Stepper::kFast;
   const double speed = service.speed();
   const auto& recorder = service.recorder();
   return {{"speed", std::isinf(speed) ? Json("max") : Json(speed)},
-          {"stepper", fast ? "fast" : "exact"},
+          {"stepper", Name(service.config().control.session.world.stepper)},
           {"stepper_reason", service.config().stepper_reason},
           {"seed", frame.seed},
           {"hand", service.hand().name},

@@ -116,7 +116,7 @@ class Patience(Case):
                               (["experiment", "rotation", "--hand", "al"], [":files", "allegro"]), (["object", "show", "eg"], [":files", "egg"]),
                               (["hand", "new", "--object", "eg"], [":files", "egg"]), (["hand", "check", "sh"], [":files", "shadow"]),
                               (["experiment", "zoo", "--objects", "eg"], ["egg"]), (["up", "--noise", "ta"], ["taxel"]),
-                              (["up", "--clock", ""], ["continuous", "lockstep"]), (["up", "--stepper", ""], ["auto", "exact", "fast"]),
+                              (["up", "--clock", ""], ["continuous", "lockstep"]), (["up", "--stepper", ""], ["auto", "exact", "fast", "round"]),
                               (["experiment", "exploration", "--estimator", "s"], ["secant"])]:
             with self.subTest(words):
                 self.assertEqual(offered(*words), wanted)

@@ -16,7 +16,7 @@
 namespace regrasp {
 namespace {
 
-TEST_P(BothSteppers, SurvivesFullEffortNoise) {
+TEST_P(EachStepper, SurvivesFullEffortNoise) {
   // The worst that a controller can ask for: full effort of random sign, new in every tick and then
   // held for 50 ticks, with the ball among the fingers and every joint thrown at its stops.
   for (const int hold : {1, 50}) {
@@ -79,7 +79,7 @@ TEST(World, FaultsAreFinalAndTheProcessLives) {
   }
 }
 
-TEST_P(BothSteppers, AbsurdForcesInsideOdeAreFaults) {
+TEST_P(EachStepper, AbsurdForcesInsideOdeAreFaults) {
   // Finite at the door, but infinite or NaN once ODE has multiplied: its own checks or ours must
   // see it.
   for (const double force : {1e30, 1e150, 1e300, 1.7e308}) {
@@ -99,7 +99,7 @@ long BytesInUse() {
   return static_cast<long>(info.uordblks + info.hblkhd);
 }
 
-TEST_P(BothSteppers, FaultsDoNotAddUp) {
+TEST_P(EachStepper, FaultsDoNotAddUp) {
   if (!CountsAllocations()) GTEST_SKIP() << "a sanitizer owns malloc";
   const auto cycle = [&](int k) {
     World world(Shadow().hand, Shadow().object, Config(GetParam()), GraspPosture(Shadow().hand),
@@ -138,7 +138,7 @@ TEST(World, MalformedInputsAreFaults) {
   EXPECT_EQ(status_after([](World& w) { w.SetTorque(JointVector::Zero(3)); }), StepStatus::kFault);
 }
 
-TEST_P(BothSteppers, StepAllocatesNothing) {
+TEST_P(EachStepper, StepAllocatesNothing) {
   if (!CountsAllocations()) GTEST_SKIP() << "a sanitizer owns malloc";
   Holding holding(Config(GetParam()));
   World& world = *holding.world;

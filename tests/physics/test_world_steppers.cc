@@ -76,7 +76,7 @@ TEST(World, HeldBallMovesAlikeWithBothSteppers) {
         0.05);
 }
 
-TEST_P(BothSteppers, HeldContactsDoNotCreep) {
+TEST_P(EachStepper, HeldContactsDoNotCreep) {
   Holding holding(Config(GetParam()));
   for (int k = 0; k < 2000; ++k) holding.Tick();
   const auto points = [&] {
@@ -97,7 +97,7 @@ TEST_P(BothSteppers, HeldContactsDoNotCreep) {
         << "the requirement, contact " << i;
 }
 
-TEST_P(BothSteppers, EqualInputsGiveEqualBitsEvenInterleaved) {
+TEST_P(EachStepper, EqualInputsGiveEqualBitsEvenInterleaved) {
   const JointVector q0 = GraspPosture(Shadow().hand);
   const auto make = [&](double mass) {
     auto world = std::make_unique<World>(Shadow().hand, Shadow().object, Config(GetParam()), q0,

@@ -202,6 +202,6 @@ inline std::uint64_t HashOf(const World& world) {
 }
 
 /// Instantiated in test_world.cc, for every file of this program.
-class BothSteppers : public testing::TestWithParam<Stepper> {};
+class EachStepper : public testing::TestWithParam<Stepper> {};
 
 }  // namespace regrasp

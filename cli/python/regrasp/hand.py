@@ -62,7 +62,7 @@ def start(seed=1, hand=None, object=None, noise=None, clock="lockstep", stepper=
     """A Hand of a private daemon at full speed, which ends when the Hand is closed.
 
     seed: of noise and start. hand, object: names or URDF files. noise: a preset. clock: "lockstep", the simulated time
-    advances only while a job runs, or "continuous". stepper: "fast", "exact" or "auto". output_dir: kept; without it what the
+    advances only while a job runs, or "continuous". stepper: "fast", "exact", "round" or "auto". output_dir: kept; without it what the
     daemon writes is deleted with it. settings: parameters, with __ for the dot: gait__mode="exploring".
     The configuration and environment of the user change nothing. Raises RuntimeError with the daemon's own words when it
     does not start."""
