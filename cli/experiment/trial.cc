@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "cli/client/errors.h"
 #include "cli/experiment/gait_events.h"
@@ -16,6 +17,7 @@ namespace regrasp::cli {
 namespace {
 
 constexpr std::int64_t kExploreLimit = 60000, kPhiLook = 10;  // [ticks]
+constexpr int kPhiLooks = 30;
 constexpr std::int64_t kRotateChunk = 1000, kLookChunk = 100;
 constexpr std::int64_t kLongestWatched = 300000;  // of a turn that is looked at
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
@@ -43,6 +45,24 @@ double Distance(const Json& a, const Json& b) {
 }
 
 Json ObjectPlace(SteppedDaemon* daemon) { return daemon->Call("truth").at("object").at("p_WO_m"); }
+
+/// When phi has first been enough for 0.3 s on average: a turn of the dither, which swings it.
+class NearBest {
+ public:
+  void Look(double phi, double enough) {
+    looks_.push_back(phi);
+    sum_ += phi;
+    if (looks_.size() > kPhiLooks) sum_ -= looks_[looks_.size() - kPhiLooks - 1];
+    reached_ = looks_.size() >= kPhiLooks && sum_ >= kPhiLooks * enough;
+  }
+  bool reached() const { return reached_; }
+  double time_s() const { return 1e-3 * kPhiLook * static_cast<double>(looks_.size()); }
+
+ private:
+  std::vector<double> looks_;
+  double sum_ = 0;
+  bool reached_ = false;
+};
 
 /// Columns at the end of every row: what names the state reached, and how to get there again.
 void AddEnd(SteppedDaemon* daemon, const Plan& plan, const Unit& unit, const std::string& estimator,
@@ -84,20 +104,18 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
   const bool timed = map && map->rays > 0 && plan.CriterionOf(unit.which) == "manipulability";
   if (Done(grasp)) {
     const Json before = ObjectPlace(daemon);
-    const Json begin = At(status, "time_s");
-    record =
-        daemon->Run("explore",
-                    {{"finger", unit.subject},
-                     {"criterion", plan.CriterionOf(unit.which)},
-                     {"estimator", estimator},
-                     {"seed", unit.seed}},
-                    timed ? kPhiLook : kExploreLimit, kExploreLimit, [&] {
-                      if (!timed || !near_best_s.is_null()) return;
-                      const Json truth = daemon->Call("truth");
-                      const Json& finger = truth.at("fingers").at(unit.subject);
-                      if (finger.at("manipulability").get<double>() >= kSuccessShare * map->best)
-                        near_best_s = truth.at("time_s").get<double>() - begin.get<double>();
-                    });
+    NearBest near;
+    record = daemon->Run("explore",
+                         {{"finger", unit.subject},
+                          {"criterion", plan.CriterionOf(unit.which)},
+                          {"estimator", estimator},
+                          {"seed", unit.seed}},
+                         timed ? kPhiLook : kExploreLimit, kExploreLimit, [&] {
+                           if (!timed || near.reached()) return;
+                           const Json truth = daemon->Call("truth").at("fingers").at(unit.subject);
+                           near.Look(truth.at("manipulability"), kSuccessShare * map->best);
+                         });
+    if (near.reached()) near_best_s = near.time_s();
     daemon->Step(kHoldTicks);
     status = daemon->Call("status");
     row["outcome"] = Outcome(record, Plain(At(status, "state")));
