@@ -250,6 +250,23 @@ class Scripted(DaemonCase):
             self.expect(0, *again, *words[2:], "-o", self.dir / "allowed.png")  # the dpi it names
         self.assertRegex(refused(2, "quality", "--size", "300", "--dpi", "1200")[0], r"so 50 to 67\d dpi$")
 
+    def test_what_says_how_a_picture_is_printed_needs_a_printed_width(self):
+        run = str(self.json("record", "start", "run.mcap")["path"])
+        self.expect(0, "grasp")
+        self.expect(0, "step", "200", "--wait")
+        self.json("record", "stop")
+        for printed in (["--dpi", "50"], ["--dpi", "300"], ["--dpi", "1200"], ["--font-size", "9"]):
+            for words in (["quality"], ["quality", run], ["comparison", "a.mcap", "b.mcap"]):
+                cause, hint = self.refused(2, "plot", *words, *printed, "-o", self.dir / "x.png")
+                self.assertEqual(cause, f"regrasp: {' '.join(printed)} says how a picture is printed, and --size is missing")
+                again = hint.removeprefix("  try: regrasp ").split()
+                self.assertEqual(again[:1 + len(words)] + again[-2:], ["plot", *words, *printed])
+                if words == ["quality"]:
+                    self.expect(0, *again, "-o", self.dir / "x.png")
+        for name, value in (("dpi", 300), ("font_size_pt", 9)):
+            asked = self.expect(2, "call", "plot", json.dumps({"name": "quality", name: value}))
+            self.assertIn(f"{name} says how a picture is printed, and size_m is missing", asked.stderr)
+
     def test_of_a_run_without_a_job_the_hint_names_a_picture_that_it_has(self):
         run = self.json("record", "start", "idle.mcap")["path"]
         self.expect(0, "step", "200", "--wait")
