@@ -87,10 +87,32 @@ ExitCode PlotRuns(Context& context, const Invocation& invocation) {
   return code;
 }
 
+/// Refuses what only a printed width gives a meaning.
+void CheckPrinted(const Invocation& invocation) {
+  constexpr double kPageMm = 180, kPixels = 1600;  // across a page; as many as on a screen
+  const Json& params = invocation.params;
+  if (params.contains("size_m")) return;
+  std::string what = Plain(params["name"]);
+  if (invocation.Has("run")) what += " " + invocation.Text("run");
+  std::ranges::replace(what, '\n', ' ');  // a line for each run
+  for (const PrintedOnly& printed : kPrintedOnly) {
+    const auto given = params.find(printed.name);
+    if (given == params.end()) continue;
+    const double value = given->get<double>();
+    const double mm = printed.name == "dpi" ? std::max(50.0, kPixels / value * 25.4) : kPageMm;
+    throw CliError(
+        kUsage,
+        fmt::format("{} {:g} says how a picture is printed, and --size is missing", printed.flag,
+                    value),
+        fmt::format("regrasp plot {} --size {:.0f}mm {} {:g}", what, mm, printed.flag, value));
+  }
+}
+
 ExitCode Plot(Context& context, const Invocation& typed) {
   Invocation invocation = typed;
   if (typed.Has("font-size"))
     invocation.params["font_size_pt"] = ParseQuantity(typed.Text("font-size"), "--font-size", "pt");
+  CheckPrinted(invocation);
   if (invocation.Has("show") && !context.out().human()) {
     throw CliError(kUsage, "--show draws for people: it goes with neither --json nor --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " --show");

@@ -17,8 +17,14 @@
 namespace regrasp::run {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 std::atomic<int> signal_seen{0};
 static_assert(std::atomic<int>::is_always_lock_free);
+
+double SecondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// One line that is written over, for a person who waits; nothing elsewhere.
 class Progress {
@@ -30,9 +36,8 @@ class Progress {
   bool operator()(int done, int total) {
     const auto now = Clock::now();
     if (on_ && now - told_ > std::chrono::milliseconds(200) && done > 0) {
-      const double elapsed = std::chrono::duration<double>(now - begin_).count();
       fmt::print(stderr, "\r{} of {} pictures, {:.0f} s left\x1b[K", done, total,
-                 elapsed * (total - done) / done);
+                 SecondsSince(begin_) * (total - done) / done);
       std::fflush(stderr);
       told_ = now;
       shown_ = true;
@@ -41,7 +46,6 @@ class Progress {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   const bool on_;
   bool shown_ = false;
   const Clock::time_point begin_ = Clock::now();
@@ -55,6 +59,7 @@ ExitCode VideoCommand(const Command& command) {
   options.stretch = command.stretch();
   options.scene_only = command.Has("--scene-only");
   const std::string& out = command.options.at("--output");
+  const auto begin = Clock::now();
   RunWindow window(command.file,
                    {std::max(0.0, options.stretch.from_s - kCurveWindow_s), options.stretch.to_s});
   const Json differences = TellDifferences(window.file());
@@ -66,15 +71,18 @@ ExitCode VideoCommand(const Command& command) {
                         [&](int done, int total) { return progress(done, total); });
   }
   if (result.interrupted) return ExitCode::kInterrupted;
+  const double made_in_s = SecondsSince(begin);
   Print(command,
         {{"path", out},
          {"frames", result.frames},
          {"duration_s", result.duration_s},
+         {"made_in_s", made_in_s},
          {"codec", result.codec},
          {"differences", differences},
          {"lost", LossesJson(window.file().lost)}},
-        fmt::format("{}: {} frames, {:.1f} s, {}", out, result.frames, result.duration_s,
-                    result.codec) +
+        fmt::format("{}: {} frames, {:.1f} s, {}, made in {:.1f} s ({:.2g} times real time)", out,
+                    result.frames, result.duration_s, result.codec, made_in_s,
+                    result.duration_s / made_in_s) +
             LossesText(window.file().lost));
   return window.file().lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }

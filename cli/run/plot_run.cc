@@ -25,19 +25,24 @@ constexpr std::size_t kCompared = 2;  // explorations of one file
 
 using cli::CliError;
 
-/// As the user called the file, or nearly.
+/// As the user called the file, or nearly. What is to be typed has the whole path: a name alone is
+/// found only in this directory, or by a daemon.
 std::string Name(const std::string& path) { return fs::path(path).filename().string(); }
 
+std::string PlotCommand(std::string_view plot, const std::string& path) {
+  return fmt::format("regrasp plot {} {}", plot, path);
+}
+
 /// Of what has been asked for, not of the picture's file.
-CliError Refusal(const PictureRefused& refused, const std::string& plot, const std::string& run,
+CliError Refusal(const PictureRefused& refused, const std::string& plot, const std::string& path,
                  const PlotOptions& options, double last_s) {
-  const std::string command = fmt::format("regrasp plot {} {}", plot, run);
+  const std::string command = PlotCommand(plot, path);
   if (const auto* size = dynamic_cast<const PictureSizeRefused*>(&refused))
     return {ExitCode::kUsage, size->cause(),
             size->nearest_dpi > 0 ? fmt::format("{} --size {:g} --dpi {:g}", command,
                                                 options.width_mm, size->nearest_dpi)
                                   : "regrasp help plot"};
-  return {ExitCode::kRefused, fmt::format("{}: {}", run, refused.cause()),
+  return {ExitCode::kRefused, fmt::format("{}: {}", Name(path), refused.cause()),
           last_s > 0 ? fmt::format("{}    (without --last)", command)
                      : fmt::format("{} --last 10    (the last 10 s)", command)};
 }
@@ -90,7 +95,7 @@ std::vector<std::int64_t> JobStarts(const Segment& segment, bool explorations) {
   return starts;
 }
 
-Pictured LastJob(const std::string& path, double last_s) {
+Pictured LastJob(const PlotRow& plot, const std::string& path, double last_s) {
   std::vector<McapChunk> chunks;
   const RunFile file = ReadJournals(path, &chunks);
   const Segment& segment = file.segments.back();
@@ -100,9 +105,12 @@ Pictured LastJob(const std::string& path, double last_s) {
     return Execute(path, dt, std::max<std::int64_t>(0, end - std::llround(last_s / dt)), end,
                    false);
   const std::vector<std::int64_t> starts = JobStarts(segment, false);
-  if (starts.empty())
-    throw CliError(ExitCode::kRefused, Name(path) + ": no job in the last segment",
-                   fmt::format("regrasp plot NAME {} --last 10    (the last 10 s)", Name(path)));
+  if (starts.empty()) {
+    const bool needs_touch = plot.of != PlotOf::kHistory && plot.of != PlotOf::kNewestFrame;
+    throw CliError(
+        ExitCode::kRefused, Name(path) + ": no job in the last segment",
+        PlotCommand(needs_touch ? "quality" : plot.name, path) + " --last 10    (the last 10 s)");
+  }
   return Execute(path, dt, starts.back(), end, true);
 }
 
@@ -124,7 +132,7 @@ std::vector<Pictured> Explorations(const std::string& path, std::size_t count) {
     throw CliError(ExitCode::kRefused,
                    fmt::format("{}: {} explorations in the last segment, {} are needed", Name(path),
                                result.size(), count),
-                   "regrasp plot quality " + Name(path));
+                   PlotCommand("quality", path));
   return result;
 }
 
@@ -154,19 +162,19 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
   const PlotRow* plot = FindPlot(name);
   if (plot == nullptr || plot->of == PlotOf::kIncident)
     throw CliError(ExitCode::kUsage, name + ": a run file has the pictures " + PicturesOfRuns(),
-                   "regrasp plot quality " + Name(paths.front()));
+                   PlotCommand("quality", paths.front()));
   const bool comparison = plot->of == PlotOf::kExplorations;
   if (!comparison && paths.size() > 1)
     throw CliError(ExitCode::kUsage,
                    fmt::format("{} shows one run, {} are given; only comparison shows several",
                                name, paths.size()),
-                   fmt::format("regrasp plot {} {}", name, Name(paths.front())));
+                   PlotCommand(name, paths.front()));
   Draft draft(out, Draft::Existing::kReplace);
   std::vector<Pictured> runs;
   if (comparison)
     runs = Compared(paths);
   else
-    runs.push_back(LastJob(paths.front(), options.last_s));
+    runs.push_back(LastJob(*plot, paths.front(), options.last_s));
   PlotInput input = std::move(runs.front().input);
   const double last_s = std::exchange(options.last_s, 0);
   options.object_name = input.options.object_name;
@@ -175,7 +183,7 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
   try {
     DrawPlot(name, input, draft.path());
   } catch (const PictureRefused& refused) {
-    throw Refusal(refused, name, Name(paths.front()), options, last_s);
+    throw Refusal(refused, name, paths.front(), options, last_s);
   }
   std::vector<std::string> notes;
   for (const Pictured& run : runs)

@@ -1,10 +1,8 @@
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 
+#include "core/hand/body_check.h"
 #include "core/hand/fingertips.h"
 #include "core/hand/hand_shapes.h"
 #include "core/hand/hand_tree.h"
@@ -45,7 +43,7 @@ class HandReader {
     for (const auto& finger : layout_.fingers) ReadFinger(finger);
     ReadRest(file_.root);
     CheckCounts();
-    CheckBodies();
+    CheckBodies(file_, options_, &hand_, &problems_);
     problems_.ThrowIfAny();
     NumberJoints(tree_, order_, &hand_, &problems_);
     for (std::size_t f = 0; f < layout_.fingers.size(); ++f) FindFingertip(f);
@@ -69,8 +67,6 @@ class HandReader {
     link.name = LinkAt(in).name;
     link.parent_joint = parent_joint;
     hand_.links.push_back(link);
-    line_of_link_.push_back(LinkAt(in).inertial ? LinkAt(in).inertial->inertia_line
-                                                : LinkAt(in).line);
     shape_origin_.emplace_back();
     Merge(in, X_LG, static_cast<int>(hand_.links.size()) - 1);
   }
@@ -155,68 +151,14 @@ class HandReader {
                     hand_.joints.size(), kMaxJoints);
   }
 
-  /// The moment that a link with shapes has in all axes [kg m²]; 0 of others.
-  double MomentInAllAxes(const Link& link) const {
-    const std::optional<UrdfInertial>& body = LinkAt(file_.FindLink(link.name)).inertial;
-    if (!body || link.shapes.empty()) return 0;
-    const double moment = body->inertia(0, 0);
-    return body->inertia == moment * Matrix3d::Identity() ? moment : 0;
-  }
-
-  /// Such moments that several links have: written for want of better ones.
-  std::set<double> Placeholders() const {
-    constexpr int kSeveral = 3;
-    std::map<double, int> links;
-    for (std::size_t l = 1; l < hand_.links.size(); ++l) ++links[MomentInAllAxes(hand_.links[l])];
-    std::set<double> placeholders;
-    for (const auto& [moment, count] : links)
-      if (moment > 0 && count >= kSeveral) placeholders.insert(moment);
-    return placeholders;
-  }
-
-  void CheckBodies() {
-    const std::set<double> placeholders = Placeholders();
-    std::map<double, std::vector<std::string>> guessed;  // links, by their placeholder
-    for (std::size_t l = 1; l < hand_.links.size(); ++l) {
-      Link& link = hand_.links[l];
-      const int line = line_of_link_[l];
-      const bool told = LinkAt(file_.FindLink(link.name)).inertial.has_value();
-      const std::string element = LinkElement(link.name);
-      std::string why = WhyNoBody(link, told);
-      const bool impossible = !why.empty();
-      if (!impossible) why = WhyUnlikely(link);
-      const double moment = MomentInAllAxes(link);
-      const bool guess = why.empty() && placeholders.contains(moment);
-      if (guess)
-        why = fmt::format("<inertia> is {:g} kg m² in all axes, as of other links", moment);
-      if (why.empty()) continue;
-      if (options_.inertia_from_shape) {
-        InventBody(&link);
-        problems_.Warn(
-            line, element,
-            fmt::format("{}; {:.3g} g with the inertia of its shape taken", why, 1e3 * link.mass));
-      } else if (impossible) {
-        problems_.Add(line, "{}: {}; --inertia-from-shape computes what is missing", element, why);
-      } else if (guess) {
-        guessed[moment].push_back(link.name);
-      } else {
-        problems_.Warn(line, element, why + "; --inertia-from-shape computes it");
-      }
-    }
-    for (const auto& [moment, links] : guessed)
-      problems_.Warn(0, "",
-                     fmt::format("<inertia> is {:g} kg m² in all axes of several links ({}): a "
-                                 "placeholder; --inertia-from-shape computes it",
-                                 moment, fmt::join(links, ", ")));
-  }
-
   void FindFingertip(std::size_t f) {
     const std::string& tip_link = layout_.fingers[f].tip_link;
     Finger& finger = hand_.fingers[f];
     const auto l = static_cast<std::size_t>(finger.tip_link);
     if (!fingertips_->Find(f, frames_.at(file_.FindLink(tip_link)).X_LG, shape_origin_[l],
                            &hand_.links[l], &finger))
-      problems_.Add(line_of_link_[l], "finger \"{}\": tip {} must have a <collision>", finger.name,
+      problems_.Add(BodyLine(LinkAt(file_.FindLink(hand_.links[l].name))),
+                    "finger \"{}\": tip {} must have a <collision>", finger.name,
                     LinkElement(hand_.links[l].name));
   }
 
@@ -229,9 +171,8 @@ class HandReader {
   JointValues values_;
   std::optional<Fingertips> fingertips_;
   HandModel hand_;
-  std::map<int, Frame> frames_;  // by URDF link: our link that carries it, and where
-  std::vector<int> order_;       // of hand_.joints, as URDF joints
-  std::vector<int> line_of_link_;
+  std::map<int, Frame> frames_;                 // by URDF link: our link that carries it, and where
+  std::vector<int> order_;                      // of hand_.joints, as URDF joints
   std::vector<std::vector<int>> shape_origin_;  // by link and shape: URDF link
 };
 

@@ -201,6 +201,13 @@ std::vector<Field> EventFields() {
           {"line", kInteger, "for viewers: 0"}};
 }
 
+std::string NamesOfStates() {
+  std::string names;
+  for (int i = 0; i <= static_cast<int>(kLastState); ++i)
+    names += (i > 0 ? ", " : "") + std::string(Name(static_cast<SessionState>(i)));
+  return names;
+}
+
 /// Fields of a topic after segment, tick and time.
 std::vector<Field> OwnFields(RunTopic topic) {
   switch (topic) {
@@ -218,9 +225,7 @@ std::vector<Field> OwnFields(RunTopic topic) {
     case RunTopic::kCommands:
       return CommandFields();
     case RunTopic::kState:
-      return {{"state", kText,
-               "idle, grasping, holding, exploring, rotating, moving, releasing, dropped, faulted",
-               [](S s) { return Json(Name(s.frame.state)); }},
+      return {{"state", kText, NamesOfStates(), [](S s) { return Json(Name(s.frame.state)); }},
               {"commands", kInteger, "of the segment, applied before this state",
                [](S s) { return Json(s.commands); }},
               {"state_hash", kText, "of the whole simulation and controller",

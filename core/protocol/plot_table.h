@@ -47,6 +47,14 @@ inline constexpr auto kPlotNames = [] {
 inline constexpr std::array<std::string_view, 5> kPlotSuffixes = {".png", ".jpg", ".jpeg", ".pdf",
                                                                   ".svg"};
 
+/// Parameters that say how a picture is printed, each on the wire and as it is typed: without a
+/// printed width (`size_m`, --size) they would mean nothing, and are refused.
+struct PrintedOnly {
+  std::string_view name, flag;
+};
+inline constexpr std::array<PrintedOnly, 2> kPrintedOnly = {
+    {{"dpi", "--dpi"}, {"font_size_pt", "--font-size"}}};
+
 /// Null where there is no such picture.
 constexpr const PlotRow* FindPlot(std::string_view name) {
   const auto row = std::ranges::find(kPlotTable, name, &PlotRow::name);

@@ -120,9 +120,21 @@ void Draw(Job* job) {
   }
 }
 
+void CheckPrinted(const Params& params) {
+  for (const PrintedOnly& printed : kPrintedOnly)
+    if (params.Has(printed.name) && !params.Has("size_m"))
+      throw RpcException(RpcError{
+          ErrorCode::kInvalidParams,
+          fmt::format("{} says how a picture is printed, and size_m is missing", printed.name),
+          "give the printed width, too: size_m",
+          std::string(printed.name),
+          {}});
+}
+
 }  // namespace
 
 Outcome Plot(Service& service, const Params& params, Client&) {
+  CheckPrinted(params);
   const auto job = std::make_shared<Job>();
   job->name = params.String("name");
   const PlotOf of = FindPlot(job->name)->of;

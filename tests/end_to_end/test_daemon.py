@@ -225,10 +225,12 @@ class Scripted(DaemonCase):
     ARGUMENTS = ["--speed", "max", "--seed", "5", "--paused"]
 
     def test_pictures_that_cannot_be_are_refused_in_the_words_of_who_asked(self):
+        run = self.dir / "out" / "run.mcap"
+
         def refused(code, *words):
             cause, hint = self.refused(code, "plot", *words, "-o", self.dir / "x.png")
             for file in (str(self.dir), ".draft"):  # no file is to blame
-                self.assertNotIn(file, cause + hint)
+                self.assertNotIn(file, cause + hint.replace(str(run), "RUN"))
             return cause.removeprefix("regrasp: "), hint.removeprefix("  try: regrasp ").split("    (")[0].split()
         self.json("record", "start", "run.mcap")
         self.expect(0, "grasp")
@@ -237,18 +239,43 @@ class Scripted(DaemonCase):
         self.assertEqual(refused(5, "contacts"), (nothing, ["grasp", "--wait"]))
         self.assertEqual(refused(5, "contacts", "--last", "0.1"), (nothing, ["plot", "contacts"]))
         self.json("record", "stop")
-        run = self.dir / "out" / "run.mcap"
         for words in (["contacts", run], ["contacts", run, "--last", "0.1"]):
             self.assertEqual(refused(5, *words)[0], "run.mcap: " + nothing)
-        self.assertEqual(refused(2, "quality", run, run), ("quality shows one run, 2 are given; only comparison shows several", ["plot", "quality", "run.mcap"]))
-        self.assertEqual(refused(2, "incident", run)[1], ["plot", "quality", "run.mcap"])
-        for words in (["quality"], ["quality", run, "--last", "0.1"]):
+        self.assertEqual(refused(2, "quality", run, run), ("quality shows one run, 2 are given; only comparison shows several", ["plot", "quality", str(run)]))
+        self.assertEqual(refused(2, "incident", run)[1], ["plot", "quality", str(run)])
+        for words in (["quality"], ["quality", str(run), "--last", "0.1"]):
             cause, again = refused(2, *words, "--size", "88mm", "--dpi", "100")
             self.assertRegex(cause, r"^88 mm at 100 dpi are a picture of 346 x \d+ pixels; allowed are 400 x 300 to 8000 x 8000, so 1\d\d to 1200 dpi$")
-            given = [run if word == "run.mcap" else word for word in again]
-            self.assertEqual(given[:len(words[:2]) + 1], ["plot", *words[:2]])
-            self.expect(0, *given, *words[2:], "-o", self.dir / "allowed.png")  # the dpi it names
+            self.assertEqual(again[:len(words[:2]) + 1], ["plot", *words[:2]])
+            self.expect(0, *again, *words[2:], "-o", self.dir / "allowed.png")  # the dpi it names
         self.assertRegex(refused(2, "quality", "--size", "300", "--dpi", "1200")[0], r"so 50 to 67\d dpi$")
+
+    def test_what_says_how_a_picture_is_printed_needs_a_printed_width(self):
+        run = str(self.json("record", "start", "run.mcap")["path"])
+        self.expect(0, "grasp")
+        self.expect(0, "step", "200", "--wait")
+        self.json("record", "stop")
+        for printed in (["--dpi", "50"], ["--dpi", "300"], ["--dpi", "1200"], ["--font-size", "9"]):
+            for words in (["quality"], ["quality", run], ["comparison", "a.mcap", "b.mcap"]):
+                cause, hint = self.refused(2, "plot", *words, *printed, "-o", self.dir / "x.png")
+                self.assertEqual(cause, f"regrasp: {' '.join(printed)} says how a picture is printed, and --size is missing")
+                again = hint.removeprefix("  try: regrasp ").split()
+                self.assertEqual(again[:1 + len(words)] + again[-2:], ["plot", *words, *printed])
+                if words == ["quality"]:
+                    self.expect(0, *again, "-o", self.dir / "x.png")
+        for name, value in (("dpi", 300), ("font_size_pt", 9)):
+            asked = self.expect(2, "call", "plot", json.dumps({"name": "quality", name: value}))
+            self.assertIn(f"{name} says how a picture is printed, and size_m is missing", asked.stderr)
+
+    def test_of_a_run_without_a_job_the_hint_names_a_picture_that_it_has(self):
+        run = self.json("record", "start", "idle.mcap")["path"]
+        self.expect(0, "step", "200", "--wait")
+        self.json("record", "stop")
+        for name, other in (("quality", "quality"), ("gait", "gait"), ("scene", "scene"), ("contacts", "quality"), ("shape", "quality")):
+            cause, hint = self.refused(5, "plot", name, run, "-o", self.dir / "x.png")
+            self.assertEqual(cause, "regrasp: idle.mcap: no job in the last segment")
+            self.assertEqual(hint, f"  try: regrasp plot {other} {run} --last 10    (the last 10 s)")
+            self.expect(0, *hint.split("    (")[0].split()[2:], "-o", self.dir / "x.png")
 
     def hash_after(self, ticks):
         self.expect(0, "reset", "--seed", "5")

@@ -150,7 +150,8 @@ class Runs(DaemonCase):
         path = self.record()
         self.expect(0, "record", "stop")
         film = self.json("video", path, "-o", self.dir / "run.mp4", "--from", "4", "--to", "4.4", "--fps", "10")
-        self.assertEqual((film["frames"], film["codec"]), (4, "H.264"))
+        self.assertEqual((film["frames"], film["duration_s"], film["codec"]), (4, 0.4, "H.264"))
+        self.assertGreater(film["made_in_s"], 0)
         data = (self.dir / "run.mp4").read_bytes()
         self.assertEqual(data[4:8], b"ftyp")
         self.assertIn(b"avc1", data)
@@ -162,6 +163,8 @@ class Runs(DaemonCase):
         for _, _, pixels in pictures:
             self.assertGreater(len(set(pixels)), 200)  # colours: the shades are not bands
             self.assertEqual(set(pixels[:640]), {(255, 255, 255)})  # the edge stays paper white: nothing is scattered over it
+        said = self.expect(0, "video", path, "-o", self.dir / "told.gif", "--from", "4", "--to", "4.4", "--fps", "10", "--scene-only").stdout
+        self.assertRegex(said, r"told\.gif: 4 frames, 0\.4 s, GIF, made in [\d.]+ s \([\d.e+-]+ times real time\)\n$")
         self.assertIn(".mp4 or .gif", self.refused(74, "video", path, "-o", self.dir / "run.avi")[0])
 
     def test_an_interrupted_film_leaves_nothing(self):

@@ -282,39 +282,6 @@ TEST(Rotate, RefusesToUnloadBelowTheMarginAndNamesIt) {
   EXPECT_EQ(session.state(), SessionState::kHolding);
 }
 
-// The others shift their contacts until the thumb may leave (the paper's S_F), or say why it may
-// not.
-TEST(Explore, MakesRoomForAFingerThatMayNotLeaveYet) {
-  constexpr int kThumb = 4;
-  struct Case {
-    double margin_min;  // [N]; without shifting there is about 0.1 N without the thumb
-    JobState end;
-  };
-  for (const Case& c : {Case{0.4, JobState::kDone}, Case{8.0, JobState::kFailed}}) {
-    SessionConfig config = Config(3);
-    config.parameters.gait.margin_min = c.margin_min;
-    config.parameters.gait.margin_wanted = 2 * c.margin_min;
-    Session session(std::move(config));
-    ASSERT_NO_FATAL_FAILURE(Grasp(session));
-    Frame frame;
-    session.Snapshot(&frame, false);
-    ASSERT_LT(frame.fingers[kThumb].load_margin_without, c.margin_min);
-    Command explore;
-    explore.type = CommandType::kExplore;
-    explore.job = 2;
-    explore.finger = kThumb;
-    explore.max_cycles = 500;
-    session.Apply(explore);
-    const JobRecord job = Finish(session, 60);
-    EXPECT_EQ(job.state, c.end) << job.error;
-    EXPECT_EQ(session.state(), SessionState::kHolding);
-    EXPECT_EQ(job.explore.cycles > 0, c.end == JobState::kDone);
-    EXPECT_EQ(std::string(job.error).find("thumb may not leave: the load margin") == 0,
-              c.end == JobState::kFailed)
-        << job.error;
-  }
-}
-
 TEST(Rotate, StopDuringAHopEndsInASafeHold) {
   Session session(Config(4));
   ASSERT_NO_FATAL_FAILURE(Grasp(session));

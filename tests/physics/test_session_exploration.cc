@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "core/hand/finger_reach.h"
@@ -61,6 +62,33 @@ TEST(Session, EachFingerExploresUphillWithoutDrop) {
         run.session.config().model.hand.fingers[static_cast<std::size_t>(finger)].name.c_str(),
         job.explore.phi_true_initial, job.explore.phi_true_final, job.explore.cycles,
         Name(job.explore.reason).data());
+  }
+}
+
+// The others shift their contacts until the thumb may leave (the paper's S_F), or say why it may
+// not.
+TEST(Session, MakesRoomForAnExplorerThatMayNotLeaveYet) {
+  constexpr int kThumb = 4;
+  struct Case {
+    double margin_min;  // [N]; without shifting there is about 0.1 N without the thumb
+    JobState end;
+  };
+  for (const Case& c : {Case{0.4, JobState::kDone}, Case{8.0, JobState::kFailed}}) {
+    SessionConfig config = ShadowConfig(3);
+    config.parameters.gait.margin_min = c.margin_min;
+    config.parameters.gait.margin_wanted = 2 * c.margin_min;
+    SessionRun run(std::move(config));
+    ASSERT_TRUE(run.Grasp());
+    ASSERT_LT(run.Snapshot().fingers[kThumb].load_margin_without, c.margin_min);
+    ASSERT_EQ(run.Explore(kThumb, 0, 500).kind, Kind::kAllowed);
+    ASSERT_TRUE(run.FinishJob(60));
+    const JobRecord job = run.Job();
+    EXPECT_EQ(job.state, c.end) << job.error;
+    EXPECT_EQ(run.session.state(), SessionState::kHolding);
+    EXPECT_EQ(job.explore.cycles > 0, c.end == JobState::kDone);
+    EXPECT_EQ(std::string(job.error).find("thumb may not leave: the load margin") == 0,
+              c.end == JobState::kFailed)
+        << job.error;
   }
 }
 

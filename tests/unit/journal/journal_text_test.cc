@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/journal/replay.h"
+#include "core/journal/run_messages.h"
 
 namespace regrasp {
 namespace {
@@ -75,6 +76,21 @@ TEST(JournalText, WhatOnlyLooksLikeAKnownModelIsRefused) {
   const auto seed = spoilt.find(R"("seed":)");
   spoilt.insert(seed + 7, "-");
   EXPECT_THROW(ParseConfig(spoilt, &known), JournalError);
+}
+
+// What is not in the list is in no schema and no table of an export.
+TEST(JournalText, WhateverACommandHasIsAFieldOfRunFiles) {
+  const SessionConfig config = Config("sphere");
+  const std::string table = RunFieldTable();
+  for (int type = 0; type <= static_cast<int>(CommandType::kBranch); ++type) {
+    JournalEntry entry;
+    entry.command.type = static_cast<CommandType>(type);
+    entry.command.finger = 0;
+    const auto json = nlohmann::json::parse(EntryText(entry, config, 0, 0));
+    for (const auto& [key, value] : json.items())
+      EXPECT_NE(table.find("| `commands` | `" + key + "` |"), std::string::npos)
+          << key << " of " << json["method"];
+  }
 }
 
 TEST(JournalText, HandsDifferByOneBit) {
