@@ -18,10 +18,14 @@ class FixedVector {
     return true;
   }
   void clear() { size_ = 0; }
-  /// New elements are value-initialised. n <= N.
+  /// New elements are value-initialised, those of Eigen zero. n <= N.
   void resize(std::size_t n) {
     assert(n <= N);
-    for (std::size_t i = size_; i < n; ++i) items_[i] = T{};
+    for (std::size_t i = size_; i < n; ++i)
+      if constexpr (requires { T::Zero(); })
+        items_[i] = T::Zero();
+      else
+        items_[i] = T{};
     size_ = n;
   }
   std::size_t size() const { return size_; }

@@ -95,8 +95,8 @@ const Sample& Service::Topic(const std::string& topic) {
   const auto json = [&]() -> Json {
     if (topic == "contacts") return ContactsJson(frame, hand(), accepted_.parameters);
     if (topic == "joints") return JointsJson(frame, hand());
-    if (topic == "quality") return QualityJson(frame, hand(), accepted_.parameters, true);
-    if (topic == kFrameQuality) return QualityJson(frame, hand(), accepted_.parameters, false);
+    if (topic == "quality") return QualityJson(frame, hand(), true);
+    if (topic == kFrameQuality) return QualityJson(frame, hand(), false);
     return TruthJson(frame, hand());
   };
   sample.fields = Members(json());

@@ -134,8 +134,7 @@ Json JointsJson(const Frame& frame, const HandModel& hand) {
   return {{"tick", frame.tick}, {"time_s", frame.time_s}, {"joints", std::move(joints)}};
 }
 
-Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters,
-                 bool on_request) {
+Json QualityJson(const Frame& frame, const HandModel& hand, bool on_request) {
   const std::vector<GraspContact> holding = HoldingContacts(frame);
   const StabilityFrame& s = frame.stability;
   Json fingers = Json::object();

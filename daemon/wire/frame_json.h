@@ -14,10 +14,9 @@ namespace regrasp {
 Json ContactsJson(const Frame& frame, const HandModel& hand, const Parameters& parameters);
 /// Joints: sensed angles, applied torques, limits.
 Json JointsJson(const Frame& frame, const HandModel& hand);
-/// Quality measures; `parameters` tells which stability measure is selected. With `on_request` also
+/// Quality measures. With `on_request` also
 /// those that no frame has: about a millisecond.
-Json QualityJson(const Frame& frame, const HandModel& hand, const Parameters& parameters,
-                 bool on_request);
+Json QualityJson(const Frame& frame, const HandModel& hand, bool on_request);
 /// What only the simulator knows.
 Json TruthJson(const Frame& frame, const HandModel& hand);
 /// Where the finger gait is, while rotating; `active` false otherwise.
