@@ -180,7 +180,9 @@ class HandReader {
     for (std::size_t l = 1; l < hand_.links.size(); ++l) {
       Link& link = hand_.links[l];
       const int line = line_of_link_[l];
-      const bool told = LinkAt(file_.FindLink(link.name)).inertial.has_value();
+      const std::optional<UrdfInertial>& body = LinkAt(file_.FindLink(link.name)).inertial;
+      const bool told = body.has_value();
+      if (told && body->mass < 0) continue;  // told by AddBody
       const std::string element = LinkElement(link.name);
       std::string why = WhyNoBody(link, told);
       const bool impossible = !why.empty();
@@ -189,6 +191,8 @@ class HandReader {
       const bool guess = why.empty() && placeholders.contains(moment);
       if (guess)
         why = fmt::format("<inertia> is {:g} kg m² in all axes, as of other links", moment);
+      if (const std::string heavy = WhyTooHeavy(link); !heavy.empty())
+        problems_.Warn(line, element, heavy);
       if (why.empty()) continue;
       if (options_.inertia_from_shape) {
         InventBody(&link);

@@ -42,6 +42,10 @@ fs::path InPackage(const fs::path& urdf, std::string_view name, const char* vari
 fs::path ResolveMesh(const fs::path& urdf, const std::string& name, std::string* why) {
   constexpr std::string_view kFile = "file://", kPackage = "package://", kModel = "model://";
   const std::string_view text = name;
+  if (text.find("${") != std::string_view::npos || text.find("$(") != std::string_view::npos) {
+    *why = "run xacro over the file first";
+    return {};
+  }
   if (text.starts_with(kFile)) return text.substr(kFile.size());
   for (const auto& [scheme, variable] :
        {std::pair{kPackage, "ROS_PACKAGE_PATH"}, std::pair{kModel, "GAZEBO_MODEL_PATH"}}) {

@@ -82,6 +82,31 @@ TEST_F(WildTest, AMomentAboveThatOfALinksSizeIsTold) {
 }
 
 // A finger of links that all have what an exporter wrote for want of masses.
+TEST_F(WildTest, GramsForKilogramsInALinkAreTold) {
+  const auto told = [](const LoadedScenario& loaded) {
+    return std::ranges::any_of(loaded.report.warnings, [](const ModelWarning& warning) {
+      return warning.Line().find("mini.urdf:9: link \"tip\": <mass> = 10 kg in ") !=
+                 std::string::npos &&
+             warning.text.find("more than 25000 (grams for kilograms") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(told(LoaderTest::Load()));
+  EditHand("<mass value=\"0.01\"/>", "<mass value=\"10\"/>");
+  EXPECT_TRUE(told(LoaderTest::Load()));
+}
+
+TEST_F(WildTest, ANegativeMassIsToldOnce) {
+  EditHand("<mass value=\"0.01\"/>", "<mass value=\"-0.01\"/>");
+  try {
+    LoaderTest::Load();
+    FAIL() << "was not refused";
+  } catch (const ModelError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("<mass> = -0.01; must be > 0"), std::string::npos) << text;
+    EXPECT_EQ(text.find("<mass> = 0;"), std::string::npos) << text;
+  }
+}
+
 TEST_F(WildTest, TheSameMomentInAllAxesOfSeveralLinksIsAPlaceholder) {
   std::string links, joints, parent = "palm";
   for (const char* name : {"a", "b", "tip"}) {
@@ -197,8 +222,12 @@ TEST_F(WildTest, XacroThatHasNotBeenRunIsNamed) {
   EXPECT_NE(refusal.find("run xacro over the file first"), std::string::npos) << refusal;
   refusal = Refusal(sphere, "<xacro:ball_inertia m=\"1\"/>");
   EXPECT_NE(refusal.find("<xacro:ball_inertia> in <link>"), std::string::npos) << refusal;
-  refusal = Refusal("<sphere radius=\"${r}\"/>");
-  EXPECT_NE(refusal.find("run xacro"), std::string::npos) << refusal;
+  for (const char* shape :
+       {"<sphere radius=\"${r}\"/>", "<mesh filename=\"$(find a_hand)/a.stl\"/>",
+        "<mesh filename=\"package://a_hand/${side}.stl\"/>"}) {
+    refusal = Refusal(shape);
+    EXPECT_NE(refusal.find("run xacro"), std::string::npos) << refusal;
+  }
 }
 
 TEST_F(WildTest, FilesOfOtherKindsAreNamed) {
