@@ -292,17 +292,6 @@ std::vector<std::byte> Receive(const fs::path& file, int in, const MeshLimits& l
   return bytes;
 }
 
-/// "; did you mean ...?" where a file beside it differs by capitals only, as on other systems.
-std::string OtherCase(const fs::path& file) {
-  std::error_code error;
-  const std::string name = InLowerCase(file.filename().string());
-  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(directory, error))
-    if (const std::string other = entry.path().filename().string(); InLowerCase(other) == name)
-      return fmt::format("; did you mean {}? Capitals count", other);
-  return "";
-}
-
 Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
   const std::string suffix = InLowerCase(file.extension().string());
   if (std::ranges::find(kSuffixes, suffix) == kSuffixes.end())
@@ -310,7 +299,13 @@ Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
                            fmt::join(kSuffixes, ", ")));
   std::error_code error;
   if (fs::is_directory(file, error)) Fail(file, "is a directory; must be a mesh file");
-  if (!fs::is_regular_file(file, error)) Fail(file, "mesh file not found" + OtherCase(file));
+  if (!fs::is_regular_file(file, error)) {
+    const fs::path other = OtherCase(file);
+    Fail(file,
+         "mesh file not found" + (other.empty() ? ""
+                                                : fmt::format("; did you mean {}? Capitals count",
+                                                              other.filename().string())));
+  }
   const auto size = fs::file_size(file, error);
   if (error || size > limits.file_bytes)
     Fail(file,
@@ -324,6 +319,16 @@ Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
 }
 
 }  // namespace
+
+fs::path OtherCase(const fs::path& file) {
+  std::error_code error;
+  const std::string name = InLowerCase(file.filename().string());
+  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (InLowerCase(entry.path().filename().string()) == name && entry.is_regular_file(error))
+      return entry.path();
+  return {};
+}
 
 RawMesh DecodeMesh(const fs::path& file, std::span<const std::byte> bytes,
                    const MeshLimits& limits) {

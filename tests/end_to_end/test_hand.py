@@ -121,6 +121,23 @@ class Hand(Case):
         sliding = self.write("sliding.urdf", hand(3).replace('"arm1_side" type="revolute"', '"arm1_side" type="prismatic"'))
         self.assertIn('joint "arm1_side": type "prismatic" moves some fingers and is not supported', self.refused(1, "hand", "check", sliding))
 
+    def test_fingers_that_only_slide_are_named(self):
+        sliding = self.write("gripper.urdf", hand(2).replace('type="revolute"', 'type="prismatic"'))
+        for words in (["check", sliding], ["new", sliding, "-o", self.dir / "gripper.toml"]):
+            error = self.refused(1, "hand", *words)
+            self.assertIn("arm1_side (prismatic)", error)
+            self.assertIn("a finger must turn", error)
+
+    def test_joints_that_hardly_move_are_told(self):
+        strong = self.write("strong.urdf", hand(3, more='<dynamics damping="100"/>'))
+        warned = " ".join(self.check(strong)["warnings"])
+        self.assertIn("lets 9 joints (arm1_side, ", warned)
+        self.assertIn("they hardly move", warned)
+        made = self.regrasp("hand", "new", strong, "-o", self.dir / "strong.toml").stdout
+        self.assertIn("does not hold", made)
+        self.assertIn("next: regrasp hand new", made.splitlines()[-1])
+        self.assertNotIn("hardly", " ".join(self.check(self.write("fine.urdf", hand(3)))["warnings"]))
+
     def test_a_first_axis_along_x_of_its_link_can_be_built_at_rest(self):
         text = hand(3)
         for turned in ("0 0 1.5707963", "0 0 3.1415927", "0 0 0"):

@@ -157,6 +157,15 @@ TEST_F(WildTest, AMeshThatIsNotThereIsTheOnlyMistakeOfItsLink) {
   }
 }
 
+TEST_F(WildTest, AMeshWhoseNameDiffersByCapitalsIsFound) {
+  Write("hands/Upper.OBJ", kTetrahedron);
+  EditHand("<box size=\"0.01 0.01 0.04\"/>", "<mesh filename=\"upper.obj\"/>");
+  ExpectRefused({"\"upper.obj\": file not found, but ", "Upper.OBJ is there"});
+  LoadOptions options;
+  options.fill_missing_meshes = true;
+  EXPECT_EQ(LoadScenario("mini", "", {root_}, options).report.fits.size(), 1u);
+}
+
 // Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
 TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
   EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"-0.29 0.001 0.17\"/>");
