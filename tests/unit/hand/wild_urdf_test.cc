@@ -205,7 +205,13 @@ TEST_F(WildTest, PathsOfOtherSystems) {
   fs::create_directories(elsewhere);
   fs::copy(root_ / "objects/meshes/ell.obj", elsewhere);
   const std::string mesh = "<mesh filename=\"model://ell_description/meshes/ell.obj\"/>";
-  EXPECT_NE(Refusal(mesh).find("$GAZEBO_MODEL_PATH"), std::string::npos) << Refusal(mesh);
+  EXPECT_NE(
+      Refusal(mesh).find("$GAZEBO_MODEL_PATH, but \"meshes/ell.obj\" is there: name that instead"),
+      std::string::npos)
+      << Refusal(mesh);
+  for (const char* name : {"package://", "package:///", "package://ell_description"})
+    EXPECT_NE(Refusal(fmt::format("<mesh filename=\"{}\"/>", name)).find("$ROS_PACKAGE_PATH"),
+              std::string::npos);
   ::setenv("GAZEBO_MODEL_PATH", ("/nowhere:" + root + "/elsewhere").c_str(), 1);
   ExpectEll(Load(mesh));
   ::unsetenv("GAZEBO_MODEL_PATH");
