@@ -257,7 +257,10 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
                      HelpHint(scope));
     }
     std::string cause = error.what();
-    throw CliError(kUsage, cause.substr(0, cause.find('\n')), HelpHint(scope));
+    cause = cause.substr(0, cause.find('\n'));
+    if (const std::size_t end = cause.find(": At Most 1 required"); end != std::string::npos)
+      cause = cause.substr(0, end) + " is given twice; allowed is once";
+    throw CliError(kUsage, cause, HelpHint(scope));
   }
 
   const std::string scope = scope_words();

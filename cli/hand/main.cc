@@ -38,9 +38,13 @@ void TellFailure(const Options& options, const std::string& cause, const std::st
     fmt::print(stderr, "regrasp: {}\n  try: {}\n", cause, next);
 }
 
+bool NamesNoFile(const std::string& cause) {
+  return cause.ends_with("file not found") || cause.starts_with("there is no model");
+}
+
 /// What may help against what a file is refused for: the flags that the refusal names.
 std::string NextFor(const std::string& cause) {
-  if (cause.ends_with("file not found")) return "give the path of a .urdf or .toml file";
+  if (NamesNoFile(cause)) return "give the path of a .urdf or .toml file";
   std::string flags;
   for (const char* flag : {" --fill-missing-meshes", " --inertia-from-shape"})
     if (cause.find(flag) != std::string::npos) flags += flag;
@@ -82,9 +86,8 @@ int Main(int argc, char** argv) {
     return static_cast<int>(failure.code);
   } catch (const ModelError& error) {
     const std::string cause = error.what();
-    const bool missing = cause.ends_with("file not found");
     TellFailure(options, cause, NextFor(cause));
-    return static_cast<int>(missing ? ExitCode::kNotFound : ExitCode::kFailed);
+    return static_cast<int>(NamesNoFile(cause) ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& error) {
     TellFailure(options, error.what(), "regrasp help hand " + options.verb);
     return static_cast<int>(ExitCode::kIo);

@@ -107,7 +107,11 @@ Answer Sheet::Tell() const {
       file.string(), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap), table,
       Tried(), stepper, best.choice.reason);
   for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
-  answer.text += fmt::format("\n  next: regrasp up --hand {}", file.string());
+  answer.text +=
+      best.trial.held
+          ? fmt::format("\n  next: regrasp up --hand {}", file.string())
+          : fmt::format("\n  next: regrasp hand new {} -o OTHER.toml with another --seed or {}",
+                        urdf.string(), ball ? "--object-size" : "--object");
   return answer;
 }
 

@@ -77,7 +77,7 @@ McapSummary WriteMcap(const std::string& path, const Source& source, const std::
     }
     writer.Write(channel->second, message.time, message.data);
   });
-  if (!channels.contains("run")) throw std::runtime_error(path + " holds no run");
+  CheckHoldsRun(path, channels.contains("run"), summary);
   writer.Finish();
   return summary;
 }

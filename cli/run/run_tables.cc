@@ -45,6 +45,12 @@ void CheckFileName(const std::string& path, const char* what, std::string_view n
         fmt::format("{}: {} '{}' is no name: it {}", path, what, Shown(name), fault));
 }
 
+void CheckHoldsRun(const std::string& path, bool has_run, const McapSummary& summary) {
+  if (has_run || (summary.messages > 0 && !summary.lost.empty())) return;
+  throw std::runtime_error(path + " holds no run" +
+                           (summary.lost.empty() ? "" : "; lost: " + LossText(summary.lost[0])));
+}
+
 std::string_view UnitOf(std::string_view field) {
   for (const auto& [end, unit] : kUnits)
     if (field.ends_with(end)) return unit;
@@ -65,7 +71,7 @@ RunTables ReadTables(const std::string& path, const Source& source, McapSummary*
   } catch (const JournalError& e) {
     throw std::runtime_error(fmt::format("{}: topic '{}': {}", path, Shown(topic), e.what()));
   }
-  if (!run.topics.contains("run")) throw std::runtime_error(path + " holds no run");
+  CheckHoldsRun(path, run.topics.contains("run"), *summary);
   return run;
 }
 

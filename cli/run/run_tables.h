@@ -29,6 +29,10 @@ struct RunTables {
 /// std::runtime_error with `path` where it is none.
 void CheckFileName(const std::string& path, const char* what, std::string_view name);
 
+/// Throws std::runtime_error where a file has no message of topic "run", unless damage took it and
+/// left others.
+void CheckHoldsRun(const std::string& path, bool has_run, const McapSummary& summary);
+
 /// All topics but those for viewers and the saved states. Throws std::runtime_error with `path` for
 /// a message that is not as expected, or a file that holds no run.
 RunTables ReadTables(const std::string& path, const Source& source, McapSummary* summary);

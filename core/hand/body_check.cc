@@ -48,6 +48,7 @@ void CheckBodies(const UrdfFile& file, const LoadOptions& options, HandModel* ha
   for (std::size_t l = 1; l < hand->links.size(); ++l) {
     Link& link = hand->links[l];
     const UrdfLink& in = LinkOf(file, link);
+    if (in.inertial && in.inertial->mass < 0) continue;  // told by AddBody
     const int line = BodyLine(in);
     const std::string element = LinkElement(link.name);
     std::string why = WhyNoBody(link, in.inertial.has_value());
@@ -56,6 +57,8 @@ void CheckBodies(const UrdfFile& file, const LoadOptions& options, HandModel* ha
     const double moment = MomentInAllAxes(file, link);
     const bool guess = why.empty() && placeholders.contains(moment);
     if (guess) why = fmt::format("<inertia> is {:g} kg m² in all axes, as of other links", moment);
+    if (const std::string heavy = WhyTooHeavy(link); !heavy.empty())
+      problems->Warn(line, element, heavy);
     if (why.empty()) continue;
     if (options.inertia_from_shape) {
       InventBody(&link);

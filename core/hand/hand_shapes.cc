@@ -95,6 +95,7 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
   for (const fs::path& directory : directories)
     if (beside.empty() && IsFile(directory / geometry.mesh.filename()))
       beside = directory / geometry.mesh.filename();
+  if (beside.empty()) beside = OtherCase(geometry.mesh);
   if (!options_.fill_missing_meshes) {
     problems_->Add(
         geometry.line, "{}: <mesh> filename = {}: file not found{}; --fill-missing-meshes takes {}",

@@ -47,14 +47,31 @@ HandTree::Coupling HandTree::CouplingOf(int j) const {
   return {-1, 1, 0};
 }
 
+std::size_t HandTree::FingersBelow(int j) const {
+  std::size_t count = 0;
+  for (const HandLayout::Finger& finger : layout_.fingers) {
+    int up = file_.FindLink(finger.tip_link);
+    up = up < 0 ? -1 : link(up).parent_joint;
+    while (up >= 0 && up != j) up = link(joint(up).parent).parent_joint;
+    count += up == j;
+  }
+  return count;
+}
+
+bool HandTree::IsHeld(int j) const {
+  if (joint(j).type != Type::kPrismatic && joint(j).type != Type::kOther) return false;
+  const std::size_t moved = FingersBelow(j);
+  return moved == 0 || (moved > 1 && moved == layout_.fingers.size());
+}
+
 std::optional<double> HandTree::LockedAt(int j) const {
-  if (joint(j).type == Type::kFixed) return 0.0;
+  if (joint(j).type == Type::kFixed || IsHeld(j)) return 0.0;
   const auto own = layout_.locked.find(joint(j).name);
   if (own != layout_.locked.end()) return own->second;
   if (!joint(j).mimic) return {};
   const Coupling c = CouplingOf(j);
   if (c.driver < 0) return {};
-  if (joint(c.driver).type == Type::kFixed) return c.offset;
+  if (joint(c.driver).type == Type::kFixed || IsHeld(c.driver)) return c.offset;
   const auto driver = layout_.locked.find(joint(c.driver).name);
   if (driver == layout_.locked.end()) return {};
   return c.ratio * driver->second + c.offset;
@@ -104,14 +121,18 @@ void HandTree::Check(Problems* problems) const {
     const std::string element = JointElement(in.name);
     if (in.type == Type::kFixed) continue;
     if (in.type != Type::kRevolute && in.type != Type::kContinuous) {
-      problems->Add(in.line,
-                    "{}: type \"{}\" is not supported; allowed are revolute and fixed, and "
-                    "continuous{}",
-                    element, in.type_name.substr(0, 40),
-                    in.type == Type::kPrismatic
-                        ? " (a sliding finger cannot be simulated; lock it in the scenario's "
-                          "[locked_deg] only if it turns)"
-                        : "");
+      const std::string type = in.type_name.substr(0, 40);
+      if (IsHeld(static_cast<int>(k)))
+        problems->Warn(
+            in.line, element,
+            fmt::format("type \"{}\" is not simulated; it moves {} and is held at 0", type,
+                        FingersBelow(static_cast<int>(k)) > 0 ? "every finger" : "no finger"));
+      else
+        problems->Add(
+            in.line,
+            "{}: type \"{}\" moves some fingers and is not supported; allowed are revolute "
+            "and fixed, and continuous",
+            element, type);
       continue;
     }
     if (in.mimic) {

@@ -30,8 +30,8 @@ class HandTree {
   /// its own; -1 where they lead in a ring or nowhere.
   Coupling CouplingOf(int j) const;
 
-  /// The angle [rad] at which the joint is held, if it does not move: it is fixed or locked, or its
-  /// driver is.
+  /// The angle [rad] at which the joint is held, if it does not move: it is fixed, held or locked,
+  /// or its driver is.
   std::optional<double> LockedAt(int j) const;
 
   /// Pose of the child link in the parent link with the joint at an angle.
@@ -44,6 +44,11 @@ class HandTree {
   void Check(Problems* problems) const;
 
  private:
+  /// Neither fixed nor turning (a rail, a floating base), and moves every finger of several or
+  /// none: held where the file has its zero.
+  bool IsHeld(int j) const;
+  /// How many fingers a joint moves.
+  std::size_t FingersBelow(int j) const;
   void CheckMimic(int j, Problems* problems) const;
   void AddFixed(int link, std::set<int>* group) const;
 

@@ -25,6 +25,8 @@ void JointValues::Fill(const UrdfJoint& in, Joint* joint) {
     joint->damping = layout_.least_damping;
     raised_.push_back(in.name);
   }
+  constexpr double kSlow = 0.1;  // [rad/s]
+  if (!in.mimic && joint->effort < kSlow * joint->damping) slow_.push_back(in.name);
   if (whole_turn)
     problems_->Warn(in.line, JointElement(in.name),
                     "a continuous joint is kept within half a turn to either side");
@@ -43,6 +45,11 @@ void JointValues::TellDefaults() const {
   tell(raised_, "<dynamics damping> is less than the scenario's least", layout_.least_damping,
        "N m s/rad");
   tell(unpowered_, "<limit> effort is 0", kDefaultEffort, "N m");
+  if (!slow_.empty())
+    problems_->Warn(0, "",
+                    fmt::format("<dynamics damping> [N m s/rad] lets {} joints ({}) turn by less "
+                                "than 0.1 rad/s with their whole effort: they hardly move",
+                                slow_.size(), fmt::join(slow_, ", ")));
 }
 
 }  // namespace regrasp

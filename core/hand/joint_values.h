@@ -25,7 +25,7 @@ class JointValues {
  private:
   const HandLayout& layout_;
   Problems* problems_;
-  std::vector<std::string> undamped_, raised_, unpowered_;  // names of joints
+  std::vector<std::string> undamped_, raised_, unpowered_, slow_;  // names of joints
 };
 
 }  // namespace regrasp

@@ -76,6 +76,16 @@ std::string WhyUnlikely(const Link& link) {
       moment, most, R);
 }
 
+std::string WhyTooHeavy(const Link& link) {
+  if (link.shapes.empty()) return "";
+  const double volume = LinkSolid(link.shapes).volume;
+  if (link.mass <= kMostDensity * volume) return "";
+  return fmt::format(
+      "<mass> = {:.4g} kg in {:.4g} cm³ of <collision> is a density of {:.4g} kg/m³; nothing has "
+      "more than {:g} (grams for kilograms, or too small a shape?)",
+      link.mass, 1e6 * volume, link.mass / volume, kMostDensity);
+}
+
 void InventBody(Link* link) {
   constexpr double kDensity = 1100;  // [kg/m³]: plastic with motors and air
   Shape knuckle;                     // of a link without shape

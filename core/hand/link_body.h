@@ -23,6 +23,9 @@ std::string WhyNoBody(const Link& link, bool told);
 /// of a link, so that this is no error.
 std::string WhyUnlikely(const Link& link);
 
+/// Why no material is as dense as a link of this mass and these shapes, or "". No error either.
+std::string WhyTooHeavy(const Link& link);
+
 /// Mass (where there is none), centre and inertia of a homogeneous link of its shape.
 void InventBody(Link* link);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <set>
 #include <unordered_map>
 #include <utility>
@@ -95,6 +96,35 @@ void CheckClosed(const std::filesystem::path& file, const TriangleMesh& mesh) {
       file.string(), p.x(), p.y(), p.z()));
 }
 
+double VolumeOf(const std::vector<Vector3d>& vertices,
+                const std::vector<Eigen::Vector3i>& triangles) {
+  double six_volumes = 0;
+  for (const auto& t : triangles)
+    six_volumes += vertices[t[0]].dot(vertices[t[1]].cross(vertices[t[2]]));
+  return six_volumes / 6;
+}
+
+/// A piece that faces inwards is a cavity, and lies in another piece.
+void CheckCavities(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  constexpr int kMost = 32;  // that are looked at: each costs as much as the mesh has triangles
+  const auto pieces = PiecesOf(mesh);
+  int inwards = 0;
+  for (std::size_t i = 0; pieces.size() > 1 && i < pieces.size() && inwards < kMost; ++i) {
+    const double volume = VolumeOf(mesh.vertices, pieces[i]);
+    if (volume >= 0) continue;
+    ++inwards;
+    const Vector3d p = mesh.vertices[pieces[i][0][0]];
+    std::vector<Eigen::Vector3i> others;
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      if (k != i) others.insert(others.end(), pieces[k].begin(), pieces[k].end());
+    if (!IsInside(mesh.vertices, others, p))
+      throw ModelError(fmt::format(
+          "{}: the piece at ({:.4g}, {:.4g}, {:.4g}) is inside out and no cavity of another: its "
+          "volume is {:.4g}; triangles must be counter-clockwise seen from outside",
+          file.string(), p.x(), p.y(), p.z(), volume));
+  }
+}
+
 void DropUnused(TriangleMesh* mesh) {
   std::vector<int> place(mesh->vertices.size(), -1);
   std::vector<Vector3d> used;
@@ -117,11 +147,24 @@ std::string UnreadBytes(const std::filesystem::path& file, const TriangleMesh& m
                      mesh.unread_bytes);
 }
 
-double Volume(const TriangleMesh& mesh) {
-  double six_volumes = 0;
-  for (const auto& t : mesh.triangles)
-    six_volumes += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]]));
-  return six_volumes / 6;
+double Volume(const TriangleMesh& mesh) { return VolumeOf(mesh.vertices, mesh.triangles); }
+
+std::vector<std::vector<Eigen::Vector3i>> PiecesOf(const TriangleMesh& mesh) {
+  std::vector<int> up(mesh.vertices.size());
+  std::iota(up.begin(), up.end(), 0);
+  const auto top = [&](int i) {
+    while (up[static_cast<std::size_t>(i)] != i)
+      i = up[static_cast<std::size_t>(i)] =
+          up[static_cast<std::size_t>(up[static_cast<std::size_t>(i)])];
+    return i;
+  };
+  for (const Eigen::Vector3i& t : mesh.triangles)
+    for (int k = 1; k < 3; ++k) up[static_cast<std::size_t>(top(t[k]))] = top(t[0]);
+  std::map<int, std::vector<Eigen::Vector3i>> pieces;
+  for (const Eigen::Vector3i& t : mesh.triangles) pieces[top(t[0])].push_back(t);
+  std::vector<std::vector<Eigen::Vector3i>> list;
+  for (auto& [first, triangles] : pieces) list.push_back(std::move(triangles));
+  return list;
 }
 
 bool IsInside(const std::vector<Vector3d>& vertices, const std::vector<Eigen::Vector3i>& triangles,
@@ -186,6 +229,7 @@ void CloseMesh(const std::filesystem::path& file, bool mirrored, TriangleMesh* m
     throw ModelError(fmt::format(
         "{}: the mesh's volume is {:.4g}; triangles must be counter-clockwise seen from outside",
         file.string(), volume));
+  CheckCavities(file, *mesh);
 }
 
 TriangleMesh LoadClosedMesh(const std::filesystem::path& file, const Vector3d& scale) {

@@ -30,7 +30,8 @@ TriangleMesh LoadMesh(const std::filesystem::path& file, const Vector3d& scale);
 
 /// The same for a body: its surface must be closed (every edge is run through as often in one sense
 /// as in the other, so that several closed pieces may touch) and face outwards (its volume is
-/// positive; a mirrored mesh is turned). Triangles without area are dropped. Throws ModelError.
+/// positive; a mirrored mesh is turned; a piece that faces inwards is a cavity of another).
+/// Triangles without area are dropped. Throws ModelError.
 TriangleMesh LoadClosedMesh(const std::filesystem::path& file,
                             const Vector3d& scale = Vector3d::Ones());
 
@@ -42,6 +43,9 @@ std::string UnreadBytes(const std::filesystem::path& file, const TriangleMesh& m
 
 /// Volume enclosed by a closed mesh: sum over triangles of det(a, b, c) / 6.
 double Volume(const TriangleMesh& mesh);
+
+/// The triangles of each surface that shares no corner with another.
+std::vector<std::vector<Eigen::Vector3i>> PiecesOf(const TriangleMesh& mesh);
 
 /// Whether a point lies inside closed surfaces (inside one of them, where they overlap): the solid
 /// angle under which they are seen is 4 pi from inside, 0 from outside [Van Oosterom, Strackee

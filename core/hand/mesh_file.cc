@@ -19,6 +19,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +50,11 @@ struct Kind {
   std::string suffix;                       ///< in lower case
   std::optional<std::uint64_t> stl_rest{};  ///< of a binary STL file: BinaryStlRest
 };
+
+std::string InLowerCase(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
 
 // ---- in the child ----
 
@@ -143,10 +150,30 @@ void SendMesh(int out, const RawMesh& mesh) {
   Send(out, mesh.triangles.data(), mesh.triangles.size() * sizeof(Eigen::Vector3i));
 }
 
-void ReadByAssimp(int out, const std::string& file, const MeshLimits& limits) {
+/// What assimp shall read instead of the file, or "": it takes a byte order mark for the first word
+/// and knows an STL file in words by small letters only.
+std::string TextForAssimp(const std::string& file, const std::string& suffix) {
+  constexpr std::string_view kBom = "\xEF\xBB\xBF", kSolid = "SOLID";
+  std::ifstream in(file, std::ios::binary);
+  std::string begin(kSolid.size(), '\0');
+  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  const bool bom = begin.starts_with(kBom), capitals = suffix == ".stl" && begin == kSolid;
+  if (!bom && !capitals) return "";
+  in.clear();
+  in.seekg(bom ? kBom.size() : 0);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  return suffix == ".stl" ? InLowerCase(text) : text;
+}
+
+void ReadByAssimp(int out, const std::string& file, const std::string& suffix,
+                  const MeshLimits& limits) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_DropNormals);
+  constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_DropNormals;
+  const std::string text = TextForAssimp(file, suffix);
+  const aiScene* scene = text.empty() ? importer.ReadFile(file, kSteps)
+                                      : importer.ReadFileFromMemory(text.data(), text.size(),
+                                                                    kSteps, suffix.c_str() + 1);
   if (scene == nullptr || scene->mRootNode == nullptr)
     SendError(out, importer.GetErrorString());
   else
@@ -187,7 +214,7 @@ void LimitChild(const MeshLimits& limits) {
     else if (kind.stl_rest)
       SendMesh(3, ReadBinaryStl(file, limits));
     else
-      ReadByAssimp(3, file, limits);
+      ReadByAssimp(3, file, kind.suffix, limits);
   } catch (const std::bad_alloc&) {
     SendError(3, fmt::format("needs more than {} MiB of memory", limits.memory_bytes >> 20));
   } catch (const std::exception& error) {
@@ -266,13 +293,19 @@ std::vector<std::byte> Receive(const fs::path& file, int in, const MeshLimits& l
 }
 
 Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
-  std::string suffix = file.extension().string();
-  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string suffix = InLowerCase(file.extension().string());
   if (std::ranges::find(kSuffixes, suffix) == kSuffixes.end())
     Fail(file, fmt::format("a mesh file cannot end in \"{}\"; allowed are {}", suffix,
                            fmt::join(kSuffixes, ", ")));
   std::error_code error;
-  if (!fs::is_regular_file(file, error)) Fail(file, "mesh file not found");
+  if (fs::is_directory(file, error)) Fail(file, "is a directory; must be a mesh file");
+  if (!fs::is_regular_file(file, error)) {
+    const fs::path other = OtherCase(file);
+    Fail(file,
+         "mesh file not found" + (other.empty() ? ""
+                                                : fmt::format("; did you mean {}? Capitals count",
+                                                              other.filename().string())));
+  }
   const auto size = fs::file_size(file, error);
   if (error || size > limits.file_bytes)
     Fail(file,
@@ -286,6 +319,16 @@ Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
 }
 
 }  // namespace
+
+fs::path OtherCase(const fs::path& file) {
+  std::error_code error;
+  const std::string name = InLowerCase(file.filename().string());
+  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (InLowerCase(entry.path().filename().string()) == name && entry.is_regular_file(error))
+      return entry.path();
+  return {};
+}
 
 RawMesh DecodeMesh(const fs::path& file, std::span<const std::byte> bytes,
                    const MeshLimits& limits) {

@@ -37,19 +37,37 @@ fs::path InPackage(const fs::path& urdf, std::string_view name, const char* vari
   return {};
 }
 
+/// Where NAME/REST stands without its package, as it is often published; "" where it does not.
+std::string WithoutPackage(const fs::path& urdf, std::string_view name) {
+  const std::size_t slash = name.find('/');
+  if (slash == std::string_view::npos) return "";
+  const fs::path inside = name.substr(slash + 1);
+  std::error_code ignored;
+  for (const fs::path& way : {inside, ".." / inside})
+    if (fs::is_regular_file(urdf.parent_path() / way, ignored))
+      return fmt::format(", but \"{}\" is there: name that instead", way.string());
+  return "";
+}
+
 }  // namespace
 
 fs::path ResolveMesh(const fs::path& urdf, const std::string& name, std::string* why) {
   constexpr std::string_view kFile = "file://", kPackage = "package://", kModel = "model://";
   const std::string_view text = name;
+  if (text.find("${") != std::string_view::npos || text.find("$(") != std::string_view::npos) {
+    *why = "run xacro over the file first";
+    return {};
+  }
   if (text.starts_with(kFile)) return text.substr(kFile.size());
   for (const auto& [scheme, variable] :
        {std::pair{kPackage, "ROS_PACKAGE_PATH"}, std::pair{kModel, "GAZEBO_MODEL_PATH"}}) {
     if (!text.starts_with(scheme)) continue;
-    const fs::path file = InPackage(urdf, text.substr(scheme.size()), variable);
+    const std::string_view named = text.substr(scheme.size());
+    const fs::path file = InPackage(urdf, named, variable);
     if (file.empty())
-      *why = fmt::format("the {} is in no directory above the file and not in ${}",
-                         scheme == kModel ? "model" : "package", variable);
+      *why = fmt::format("the {} is in no directory above the file and not in ${}{}",
+                         scheme == kModel ? "model" : "package", variable,
+                         WithoutPackage(urdf, named));
     return file;
   }
   if (text.find("://") != std::string_view::npos) {

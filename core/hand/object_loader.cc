@@ -86,7 +86,7 @@ class ObjectReader {
     problems_.ThrowIfAny();
     const Solid solid = PiecesSolid(mesh, &facts_.overlap_m3);
     facts_.p_LCom = options_.inertia_from_shape ? solid.centre : PCom();
-    facts_.pieces = CountPieces(mesh);
+    facts_.pieces = static_cast<int>(PiecesOf(mesh).size());
     object_.vertices_O = std::move(mesh.vertices);
     object_.triangles = std::move(mesh.triangles);
     object_.bounding_radius = 0;

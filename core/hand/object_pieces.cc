@@ -1,7 +1,5 @@
 #include "core/hand/object_pieces.h"
 
-#include <numeric>
-
 #include "core/hand/primitive_mesh.h"
 
 namespace regrasp {
@@ -47,22 +45,6 @@ TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::str
     problems->Add(0, "the pieces have {} vertices; allowed are at most {}", whole.vertices.size(),
                   kMaxVertices);
   return whole;
-}
-
-int CountPieces(const TriangleMesh& mesh) {
-  std::vector<int> up(mesh.vertices.size());
-  std::iota(up.begin(), up.end(), 0);
-  const auto top = [&](int i) {
-    while (up[static_cast<std::size_t>(i)] != i)
-      i = up[static_cast<std::size_t>(i)] =
-          up[static_cast<std::size_t>(up[static_cast<std::size_t>(i)])];
-    return i;
-  };
-  for (const Eigen::Vector3i& t : mesh.triangles)
-    for (int k = 1; k < 3; ++k) up[static_cast<std::size_t>(top(t[k]))] = top(t[0]);
-  int pieces = 0;
-  for (std::size_t i = 0; i < up.size(); ++i) pieces += up[i] == static_cast<int>(i);
-  return pieces;
 }
 
 }  // namespace regrasp

@@ -16,7 +16,4 @@ namespace regrasp {
 TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::string& element,
                         Problems* problems);
 
-/// Surfaces that share no corner.
-int CountPieces(const TriangleMesh& mesh);
-
 }  // namespace regrasp

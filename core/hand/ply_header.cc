@@ -31,6 +31,7 @@ PlyHeader ParseHeader(const std::string& text) {
   std::vector<PlyElement>& elements = header.elements;
   constexpr std::size_t kLongest = 64 << 10;
   bool formatted = false, first = true;
+  if (text.starts_with("\xEF\xBB\xBF")) header.bytes = 3;  // a byte order mark
   while (true) {
     const std::size_t end = text.find_first_of("\r\n", header.bytes);
     if (end == std::string::npos || end > kLongest) Fail("the header has no end_header");

@@ -40,6 +40,12 @@ bool HasAttributes(std::string_view bytes, std::size_t triangles) {
   return at == bytes.size();
 }
 
+/// As text does, behind a byte order mark or not.
+bool BeginsAsText(std::string_view head) {
+  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  return head.starts_with("solid") || head.starts_with("SOLID");
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> BinaryStlRest(const std::filesystem::path& file, std::uint64_t size) {
@@ -50,7 +56,7 @@ std::optional<std::uint64_t> BinaryStlRest(const std::filesystem::path& file, st
   const bool whole = size >= kHead && in.gcount() == static_cast<std::streamsize>(kHead);
   const std::uint64_t wanted = kHead + kTriangle * std::uint64_t{Claimed(head)};
   if (whole && size >= wanted) return size - wanted;
-  if (head.starts_with("solid")) return std::nullopt;
+  if (BeginsAsText(head)) return std::nullopt;
   if (!whole)
     throw ModelError(
         fmt::format("{} bytes that do not begin with \"solid\" are no STL file", size));

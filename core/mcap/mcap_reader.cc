@@ -163,12 +163,14 @@ class Reader {
 
   McapSummary Read() {
     Open();
-    for (std::uint64_t offset = kMagic.size(); !summary_.complete;) {
+    std::uint64_t offset = kMagic.size();
+    while (!summary_.complete) {
       const auto next = OneRecord(offset);
       if (!next) break;
       offset = *next;
     }
-    if (index_.messages > summary_.messages && summary_.lost.empty())
+    if (summary_.complete) FindStatistics(offset);
+    if (index_.messages != 0 && index_.messages != summary_.messages && summary_.lost.empty())
       Lose({0, 0, 0, 0,
             "the file counts " + std::to_string(index_.messages) + " messages, " +
                 std::to_string(summary_.messages) + " were found"});
@@ -189,6 +191,22 @@ class Reader {
     if (file_.At(0, kMagic.size()) != std::string_view(kMagic.data(), kMagic.size()))
       throw McapError(path_ + " is not an MCAP file");
     index_ = ReadIndex(file_, &definitions_);
+  }
+
+  /// What stands behind the data, from `offset` on, where the file's end does not lead to it: parts
+  /// of the file were taken out or put in.
+  void FindStatistics(std::uint64_t offset) {
+    while (index_.messages == 0) {
+      const std::string head = file_.At(offset, kRecordHead);
+      Cursor cursor{head};
+      const auto opcode = cursor.Number<std::uint8_t>();
+      const auto length = cursor.Number<std::uint64_t>();
+      if (!cursor.ok || opcode == kFooter || length > kMaxRecord) return;
+      const std::string content = file_.At(offset + kRecordHead, length);
+      if (content.size() < length) return;
+      if (opcode == kStatistics) index_.messages = Cursor{content}.Number<std::uint64_t>();
+      offset += kRecordHead + length;
+    }
   }
 
   /// Reads what stands at `offset`; returns where the next record is, or nothing at the end.

@@ -44,6 +44,13 @@ class Guess {
     if (!bare.empty())
       guess_.notes.push_back(
           fmt::format("no finger ends in {}: no <collision>", fmt::join(bare, ", ")));
+    std::vector<std::string> sliding;
+    for (int j = 0; j < hand_.num_joints() && chains_.size() < 2; ++j)
+      if (!hand_.Moves(j) && joint(j).type != UrdfJoint::Type::kFixed)
+        sliding.push_back(fmt::format("{} ({})", joint(j).name, joint(j).type_name.substr(0, 40)));
+    if (!sliding.empty())
+      problems_.Add(0, "joints that are not revolute move nothing here: {}; a finger must turn",
+                    fmt::join(sliding, ", "));
     if (chains_.size() < 2 || chains_.size() > std::size_t{kMaxFingers})
       problems_.Add(0,
                     "{} chains end in a link with a <collision>: the fingers; a hand has 2 .. {}{}",

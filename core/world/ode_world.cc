@@ -50,6 +50,19 @@ void WriteBody(dBodyID body, const BodyMemory::Body& m) {
     for (int c = 0; c < 3; ++c) R[4 * r + c] = m.R_WB(r, c);
 }
 
+/// Each call, dJointSetUniversalAnchor too, has ODE turn one axis onto the other, which it cannot
+/// where they are one line: as they may be before the second is told.
+void SetUniversalAxes(dJointID joint, const Vector3d& u1, const Vector3d& u2) {
+  dVector3 other;
+  dJointGetUniversalAxis2(joint, other);
+  if (const Vector3d aside = u1 + u2; u1.cross(ToVector(other)).norm() < 0.1) {
+    dJointSetUniversalAxis1(joint, aside.x(), aside.y(), aside.z());
+    dJointSetUniversalAxis2(joint, u2.x(), u2.y(), u2.z());
+  }
+  dJointSetUniversalAxis1(joint, u1.x(), u1.y(), u1.z());
+  dJointSetUniversalAxis2(joint, u2.x(), u2.y(), u2.z());
+}
+
 }  // namespace
 
 OdeWorld::OdeWorld(const HandModel& hand, const Articulation& articulation,
@@ -99,29 +112,35 @@ void OdeWorld::BuildHand(const JointVector& q0) {
     SetMassOf(body, plan.mass, plan.I_B);
     // Gyroscopic torque of a link is below 1e-5 N m at 1 rad/s, and rotors do not add to it.
     dBodySetGyroscopicMode(body, 0);
-    SetPose(body, X_WL[plan.link].linear(), X_WL[plan.link] * plan.p_LB);
     bodies_.push_back(body);
   }
+  // Attached while the bodies are unturned: the axes that a joint has by default are square then.
   for (const JointPlan& plan : articulation_.joints) {
     const int parent = articulation_.bodies[plan.body].parent;
     const dBodyID parent_body = parent >= 0 ? bodies_[parent] : nullptr;
+    if (plan.second < 0) {
+      joints_.push_back(dJointCreateHinge(world_, nullptr));
+      dJointAttach(joints_.back(), bodies_[plan.body], parent_body);
+    } else {
+      joints_.push_back(dJointCreateUniversal(world_, nullptr));
+      dJointAttach(joints_.back(), parent_body, bodies_[plan.body]);
+    }
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const BodyPlan& plan = articulation_.bodies[b];
+    SetPose(bodies_[b], X_WL[plan.link].linear(), X_WL[plan.link] * plan.p_LB);
+  }
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const JointPlan& plan = articulation_.joints[j];
     const Vector3d p = kinematics.p_WJ[plan.first];
     const Vector3d u = kinematics.axis_W[plan.first];
-    dJointID joint = nullptr;
     if (plan.second < 0) {
-      joint = dJointCreateHinge(world_, nullptr);
-      dJointAttach(joint, bodies_[plan.body], parent_body);
-      dJointSetHingeAnchor(joint, p.x(), p.y(), p.z());
-      dJointSetHingeAxis(joint, u.x(), u.y(), u.z());
+      dJointSetHingeAnchor(joints_[j], p.x(), p.y(), p.z());
+      dJointSetHingeAxis(joints_[j], u.x(), u.y(), u.z());
     } else {
-      const Vector3d u2 = kinematics.axis_W[plan.second];
-      joint = dJointCreateUniversal(world_, nullptr);
-      dJointAttach(joint, parent_body, bodies_[plan.body]);
-      dJointSetUniversalAnchor(joint, p.x(), p.y(), p.z());
-      dJointSetUniversalAxis1(joint, u.x(), u.y(), u.z());
-      dJointSetUniversalAxis2(joint, u2.x(), u2.y(), u2.z());
+      SetUniversalAxes(joints_[j], u, kinematics.axis_W[plan.second]);
+      dJointSetUniversalAnchor(joints_[j], p.x(), p.y(), p.z());
     }
-    joints_.push_back(joint);
   }
   object_body_ = dBodyCreate(world_);
   collider_ =

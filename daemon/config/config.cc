@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 #include "core/common/nearest_name.h"
@@ -54,6 +55,7 @@ std::optional<GivenValue> Given(const toml::node& node) {
 struct Reader {
   const std::string& path;
   DaemonConfig* config;
+  std::multimap<std::uint32_t, std::string> errors = {};  // by line
 
   std::string Place(const toml::node& node) const {
     return fmt::format("{}:{}", path, node.source().begin.line);
@@ -85,14 +87,24 @@ struct Reader {
     config->origins["parameters." + name] = Place(node);
   }
 
+  /// Keeps what is wrong with one value, so that the reader hears of all at once.
+  template <typename Read>
+  void Try(const toml::node& node, const Read& read) {
+    try {
+      read();
+    } catch (const ConfigError& error) {
+      errors.emplace(node.source().begin.line, error.what());
+    }
+  }
+
   /// [parameters] may be written with quoted names, dotted keys or sub-tables.
-  void ReadParameters(const toml::table& table, const std::string& prefix) const {
+  void ReadParameters(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
       const std::string name = prefix + std::string(key.str());
       if (const toml::table* inner = node.as_table())
         ReadParameters(*inner, name + ".");
       else
-        ReadParameter(name, node);
+        Try(node, [&, &value = node] { ReadParameter(name, value); });
     }
   }
 
@@ -117,22 +129,29 @@ struct Reader {
     SetKey(config, key, text, Place(node));
   }
 
-  void Read(const toml::table& root) const {
-    for (const auto& [name, node] : root) {
-      if (name.str() == "parameters") {
-        const toml::table* table = node.as_table();
-        if (!table) Fail(node, "parameters is a table");
-        ReadParameters(*table, "");
-        continue;
-      }
-      const auto key = std::ranges::find(ConfigKeys(), name.str(), &ConfigKey::name);
-      if (key == ConfigKeys().end()) {
-        std::vector<std::string_view> names = {"parameters"};
-        for (const ConfigKey& known : ConfigKeys()) names.push_back(known.name);
-        Fail(node, fmt::format("unknown key '{}'{}", name.str(), DidYouMean(name.str(), names)));
-      }
-      ReadKey(*key, node);
+  void ReadEntry(std::string_view name, const toml::node& node) {
+    if (name == "parameters") {
+      const toml::table* table = node.as_table();
+      if (!table) Fail(node, "parameters is a table");
+      return ReadParameters(*table, "");
     }
+    const auto key = std::ranges::find(ConfigKeys(), name, &ConfigKey::name);
+    if (key == ConfigKeys().end()) {
+      std::vector<std::string_view> names = {"parameters"};
+      for (const ConfigKey& known : ConfigKeys()) names.push_back(known.name);
+      Fail(node, fmt::format("unknown key '{}'{}", name, DidYouMean(name, names)));
+    }
+    ReadKey(*key, node);
+  }
+
+  void Read(const toml::table& root) {
+    for (const auto& [name, node] : root)
+      Try(node, [&, &key = name, &value = node] { ReadEntry(key.str(), value); });
+    if (errors.empty()) return;
+    if (errors.size() == 1) throw ConfigError(errors.begin()->second);
+    std::string text = fmt::format("{} errors:", errors.size());
+    for (const auto& [line, error] : errors) text += "\n  " + error;
+    throw ConfigError(text);
   }
 };
 

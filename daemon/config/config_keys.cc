@@ -138,8 +138,14 @@ void SetKey(DaemonConfig* config, const ConfigKey& key, const std::string& text,
       throw ConfigError(fmt::format("{}{} = {}: expected an integer, {} ... {}", where, key.name,
                                     text, LimitText(key.min), LimitText(key.max)));
   }
+  const std::string before = key.get(*config);
   key.set(*config, text);
-  CheckConfig(*config, where);
+  try {
+    CheckConfig(*config, where);
+  } catch (const ConfigError&) {
+    key.set(*config, before);  // so that the next key is judged for itself
+    throw;
+  }
   config->origins[std::string(key.name)] = origin;
 }
 

@@ -1,6 +1,7 @@
 #include "daemon/requests/params.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -68,7 +69,8 @@ void CheckWord(const ParamSpec& spec, const JsonIn& value, const NameLookup& nam
   const bool thing = !finger;
   error.code = thing ? ErrorCode::kNotFound : ErrorCode::kInvalidParams;
   error.message = thing ? fmt::format("no {} named {}", Name(spec.names), Shown(value))
-                        : fmt::format("{} = {} is not allowed", spec.name, Shown(value));
+                        : fmt::format("{} = {} is not allowed; allowed are {}", spec.name,
+                                      Shown(value), fmt::join(allowed, ", "));
   if (error.hint.empty() && thing && spec.names != NameSource::kObject)
     error.hint = "call param.list for the list";
   error.allowed = std::move(allowed);

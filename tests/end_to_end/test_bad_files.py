@@ -75,6 +75,19 @@ class BadFiles(DaemonCase):
         self.assertTrue(replayed["identical"])
         self.assertEqual(replayed["lost"], lost)
 
+    def test_a_damaged_beginning_leaves_the_rest(self):
+        data = bytearray(self.good.read_bytes())
+        place = 8
+        while data[place] != 6:  # the first chunk
+            place += 9 + struct.unpack_from("<Q", data, place + 1)[0]
+        data[place + 8 + struct.unpack_from("<Q", data, place + 1)[0]] ^= 16
+        path = self.file(data)
+        for form in ("mcap", "csv", "npz"):
+            said = self.left(1, "export", path, "--format", form)
+            self.assertIn(f"lost: {9 + struct.unpack_from('<Q', data, place + 1)[0]} bytes at {place}", said)
+            self.assertNotIn(": 0 messages", said)
+        self.assertIn("lost: ", self.left(74, "export", self.file(data[: place + 9 + struct.unpack_from("<Q", data, place + 1)[0]]), "--format", "csv"))
+
     def test_what_holds_no_run_is_an_error_and_leaves_nothing(self):
         data = self.good.read_bytes()
         for bad in (b"", b"hello", data[:2000], MAGIC, MAGIC + channel(1, b"state") + message(1, b"{}"), bytes(5000)):

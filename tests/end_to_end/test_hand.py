@@ -106,6 +106,45 @@ class Hand(Case):
         self.assertEqual(error.count("effort [N m] = -1; must be >= 0"), 9)
         self.assertFalse((self.dir / "weak.toml").exists())
 
+    def test_what_carries_the_whole_hand_is_held(self):
+        rail = '<link name="{0}"/><joint name="{0}_j" type="{1}"><parent link="{0}"/><child link="{2}"/><axis xyz="0 0 1"/>{3}</joint>'
+        limit = '<limit lower="-1" upper="1" effort="100" velocity="1"/>'
+        for kind in ("prismatic", "floating", "planar"):
+            carried = rail.format("floor", kind, "sled", limit) + rail.format("sled", "prismatic", "turntable", limit)
+            carried += rail.format("turntable", "revolute", "palm", limit)
+            sheet = self.check(self.write("carried.urdf", hand(3).replace("</robot>", carried + "</robot>")))
+            bare = self.check(self.write("bare.urdf", hand(3)))
+            self.assertEqual([f["joints"] for f in sheet["fingers"]], [f["joints"] for f in bare["fingers"]])
+            warned = " ".join(sheet["warnings"])
+            self.assertIn(f'joint "floor_j": type "{kind}" is not simulated; it moves every finger and is held at 0', warned)
+            self.assertIn('joint "sled_j": type "prismatic" is not simulated', warned)
+        sliding = self.write("sliding.urdf", hand(3).replace('"arm1_side" type="revolute"', '"arm1_side" type="prismatic"'))
+        self.assertIn('joint "arm1_side": type "prismatic" moves some fingers and is not supported', self.refused(1, "hand", "check", sliding))
+
+    def test_fingers_that_only_slide_are_named(self):
+        sliding = self.write("gripper.urdf", hand(2).replace('type="revolute"', 'type="prismatic"'))
+        for words in (["check", sliding], ["new", sliding, "-o", self.dir / "gripper.toml"]):
+            error = self.refused(1, "hand", *words)
+            self.assertIn("arm1_side (prismatic)", error)
+            self.assertIn("a finger must turn", error)
+
+    def test_joints_that_hardly_move_are_told(self):
+        strong = self.write("strong.urdf", hand(3, more='<dynamics damping="100"/>'))
+        warned = " ".join(self.check(strong)["warnings"])
+        self.assertIn("lets 9 joints (arm1_side, ", warned)
+        self.assertIn("they hardly move", warned)
+        made = self.regrasp("hand", "new", strong, "-o", self.dir / "strong.toml").stdout
+        self.assertIn("does not hold", made)
+        self.assertIn("next: regrasp hand new", made.splitlines()[-1])
+        self.assertNotIn("hardly", " ".join(self.check(self.write("fine.urdf", hand(3)))["warnings"]))
+
+    def test_a_first_axis_along_x_of_its_link_can_be_built_at_rest(self):
+        text = hand(3)
+        for turned in ("0 0 1.5707963", "0 0 3.1415927", "0 0 0"):
+            first = text.replace('rpy="0 0 0.000000"', f'rpy="{turned}"')
+            first = first.replace('xyz="0 0 0.01" rpy="0 0 0"', 'xyz="0 0 0" rpy="0 0 0"')
+            self.assertEqual(len(self.check(self.write("turned.urdf", first))["fingers"]), 3)
+
     def test_an_effort_that_was_not_filled_in_is_taken_from_the_default(self):
         told = self.check(self.write("idle.urdf", hand(3, effort=0)))
         self.assertIn("<limit> effort is 0 for 9 joints", "\n".join(told["warnings"]))
@@ -213,6 +252,8 @@ class Hand(Case):
     def test_usage(self):
         four = self.write("four.urdf", hand(4))
         self.assertIn("file not found", self.refused(6, "hand", "check", self.dir / "gone.urdf"))
+        self.assertIn("available are allegro", self.refused(6, "hand", "check", "gone"))
+        self.assertIn("--seed is given twice", self.refused(2, "hand", "new", "x.urdf", "-o", "x.toml", "--seed", "1", "--seed", "2"))
         self.assertIn("must end in .toml", self.refused(2, "hand", "new", four, "-o", self.dir / "x.txt"))
         self.assertIn("no such directory", self.refused(74, "hand", "new", four, "-o", self.dir / "no" / "x.toml"))
         self.assertIn("20 to 150", self.refused(2, "hand", "new", four, "-o", self.dir / "x.toml", "--object-size", "500"))

@@ -128,6 +128,48 @@ TEST_P(EachStepper, EqualInputsGiveEqualBitsEvenInterleaved) {
   EXPECT_NE(HashOf(*other), expected);
 }
 
+// Mounted turned by right angles, an axis lies where ODE's other axis is by default.
+TEST_P(BothSteppers, BuildAUniversalJointWhicheverWayItsAxesPoint) {
+  HandModel hand = Pendulum(1e-4, 0.01);
+  Link knuckle;
+  knuckle.name = "knuckle";
+  knuckle.parent_joint = 0;
+  knuckle.mass = 0.01;
+  knuckle.I_LCom = 1e-6 * Matrix3d::Identity();
+  hand.links.insert(hand.links.begin() + 1, knuckle);
+  hand.links[2].parent_joint = 1;
+  hand.joints.push_back(hand.joints[0]);
+  hand.joints[1].name = "second";
+  hand.joints[1].parent_link = 1;
+  hand.joints[1].child_link = 2;
+  hand.joints[1].X_PJ = Isometry3d::Identity();
+  const Vector3d axes[] = {Vector3d::UnitX(),  Vector3d::UnitY(),  Vector3d::UnitZ(),
+                           -Vector3d::UnitX(), -Vector3d::UnitY(), -Vector3d::UnitZ()};
+  WorldConfig config = Config(GetParam()), hinges = config;
+  hinges.merge_universal = false;
+  for (const double turn : {0.0, 90.0, 180.0, -90.0})
+    for (const Vector3d& mount : {axes[0], axes[1], axes[2]})
+      for (const Vector3d& first : axes)
+        for (const Vector3d& second : axes) {
+          if (std::abs(first.dot(second)) > 0.5) continue;
+          hand.joints[0].X_PJ.linear() =
+              Eigen::AngleAxisd(turn * std::numbers::pi / 180, mount).toRotationMatrix();
+          hand.joints[0].axis_J = first;
+          hand.joints[1].axis_J = second;
+          const JointVector q0 = JointVector::Zero(2);
+          World world(hand, Sphere(), config, q0, At(1, 0, 0));
+          World other(hand, Sphere(), hinges, q0, At(1, 0, 0));
+          for (World* w : {&world, &other}) w->SetGravity({0, 0, -kG});
+          for (int k = 0; k < 30; ++k)
+            for (World* w : {&world, &other}) ASSERT_EQ(w->Step(), StepStatus::kOk);
+          // The knuckle's inertia counts as the parent's.
+          EXPECT_LT((world.state().q - other.state().q).norm(),
+                    0.02 * other.state().q.norm() + 1e-6)
+              << turn << " about " << mount.transpose() << ", axes " << first.transpose() << " and "
+              << second.transpose();
+        }
+}
+
 TEST(StepperChoice, TakesTheFastStepForAHandWhereBothAgree) {
   const StepperChoice choice = ChooseStepper(Shadow(), {});
   EXPECT_EQ(choice.stepper, Stepper::kFast) << choice.reason;

@@ -99,6 +99,23 @@ TEST(Config, TheDefaultFileIsTheDefault) {
   EXPECT_EQ(config.parameters.size(), ParameterTable().size());
 }
 
+TEST(Config, EverythingThatIsWrongIsToldAtOnceInTheOrderOfTheFile) {
+  DaemonConfig config;
+  const std::string complaint = Complaint(
+      "sed = 3\nspeed = \"fast\"\nstepper = \"exact\"\nmax_clients = 0\n"
+      "[parameters]\nobject.friction = 5\ngait.mod = 1\n",
+      &config);
+  std::size_t at = 0;
+  for (const char* part : {"5 errors:\n  ", ":1: unknown key 'sed'; did you mean 'seed'?\n  ",
+                           ":2: speed = \"fast\": expected 0.001", ":4: max_clients = 0: expected",
+                           ":6: object.friction = 5 is out of range",
+                           ":7: unknown parameter 'gait.mod'; did you mean 'gait.mode'?"}) {
+    const std::size_t found = complaint.find(part, at);
+    ASSERT_NE(found, std::string::npos) << part << " not in: " << complaint;
+    at = found;
+  }
+}
+
 TEST(Config, AMissingFileIsAnError) {
   DaemonConfig config;
   EXPECT_THROW(ReadConfigFile("/dev/null/absent.toml", &config), ConfigError);

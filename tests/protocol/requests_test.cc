@@ -117,6 +117,10 @@ TEST_F(Requests, RefusedOnesChangeNothing) {
 TEST_F(Requests, ErrorsNameParameterHintAndAllowedValues) {
   const Json error = client->Ask("explore", {{"finger", "rign"}})["error"];
   EXPECT_EQ(error["data"]["param"], "finger");
+  EXPECT_NE(
+      error["message"].get<std::string>().find("allowed are first, middle, ring, little, thumb"),
+      std::string::npos)
+      << error["message"];
   EXPECT_EQ(error["data"]["hint"], "did you mean 'ring'?");
   EXPECT_EQ(error["data"]["allowed"].size(), 5u);
   const Json move = client->Ask("move", {{"offset_m", {0.04, 0.03, 0.04}}})["error"];

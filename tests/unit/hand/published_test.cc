@@ -119,6 +119,47 @@ TEST_F(PublishedTest, AMirroringScaleTurnsFaces) {
   EXPECT_NE(Refusal("<mesh filename=\"b.obj\"/>").find("counter-clockwise"), std::string::npos);
 }
 
+TEST_F(PublishedTest, APieceMayFaceInwardsInAnotherOnly) {
+  // Of half the size, turned inside out: in the middle of the first, or beside it.
+  const auto with_small = [](double x) {
+    std::string text = Brick();
+    for (int i = 0; i < 8; ++i)
+      text += fmt::format("v {} {} {}\n", x + 0.006 * ((i & 1) ? 1 : -1),
+                          0.0075 * ((i & 2) ? 1 : -1), 0.015 * ((i & 4) ? 1 : -1));
+    for (const char* face :
+         {"10 12 11 9", "15 16 14 13", "13 14 10 9", "12 16 15 11", "11 15 13 9", "14 16 12 10"})
+      text += fmt::format("f {}\n", face);
+    return text;
+  };
+  Write("objects/a.obj", with_small(0));
+  const ObjectModel hollow = Object("<mesh filename=\"a.obj\"/>");
+  EXPECT_NEAR(ObjectSolid(hollow).volume, 7.0 / 8 * kBrick.prod(), 1e-3 * kBrick.prod());
+  Write("objects/a.obj", with_small(0.03));
+  const std::string refusal = Refusal("<mesh filename=\"a.obj\"/>");
+  EXPECT_NE(refusal.find(
+                "-0.0075, -0.015) is inside out and no cavity of another: its volume is -5.4e-06"),
+            std::string::npos)
+      << refusal;
+}
+
+TEST_F(PublishedTest, TextBehindAByteOrderMark) {
+  const std::string bom = "\xEF\xBB\xBF";
+  Write("objects/a.obj", bom + Brick());
+  Write("objects/a.dae", bom + Collada("Z_UP"));
+  for (const char* name : {"a.obj", "a.dae"})
+    EXPECT_LT((Extent(Object(fmt::format("<mesh filename=\"{}\"/>", name))) - kBrick).norm(),
+              kSingle)
+        << name;
+}
+
+TEST_F(PublishedTest, CapitalsOfAFileNameCount) {
+  Write("objects/Thing.OBJ", Brick());
+  const std::string refusal = Refusal("<mesh filename=\"thing.obj\"/>");
+  EXPECT_NE(refusal.find("not found; did you mean Thing.OBJ?"), std::string::npos) << refusal;
+  fs::create_directory(root_ / "objects/folder.obj");
+  EXPECT_NE(Refusal("<mesh filename=\"folder.obj\"/>").find("is a directory"), std::string::npos);
+}
+
 TEST_F(PublishedTest, MillimetresAreFoundBySize) {
   Write("objects/a.obj", Brick(1000));
   const std::string refusal = Refusal("<mesh filename=\"a.obj\"/>");

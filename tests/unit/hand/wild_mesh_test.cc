@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
 #include <string>
 
@@ -39,9 +40,13 @@ TEST_F(WildTest, StlInMillimetresOfEitherKind) {
     for (const Vector3d& p : corners) text += fmt::format("vertex {} {} {}\n", p.x(), p.y(), p.z());
     text += "endloop\nendfacet\n";
   }
-  Write("objects/text.stl", text + "endsolid ell\n");
+  text += "endsolid ell\n";
+  Write("objects/text.stl", text);
+  Write("objects/bom.stl", "\xEF\xBB\xBF" + text);
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
+  Write("objects/CAPITALS.STL", text);
   Write("objects/BINARY.STL", BinaryEll());
-  for (const char* file : {"text.stl", "BINARY.STL"}) {
+  for (const char* file : {"text.stl", "bom.stl", "CAPITALS.STL", "BINARY.STL"}) {
     SCOPED_TRACE(file);
     const std::string mesh = fmt::format("<mesh filename=\"{}\"", file);
     const std::string refusal = Refusal(mesh + "/>");
@@ -114,12 +119,15 @@ TEST_F(WildTest, PlyWithColours) {
   for (const char* axis : {"x", "y", "z"}) head += fmt::format("property float {}\n", axis);
   for (const char* colour : {"red", "green", "blue", "alpha"})
     head += fmt::format("property uchar {}\n", colour);
-  Write("objects/coloured.ply",
-        head +
-            fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                        corner / 3) +
-            vertices + faces);
-  ExpectEll(Load(std::string("<mesh filename=\"coloured.ply\"") + kMillimetres));
+  const std::string text =
+      head +
+      fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                  corner / 3) +
+      vertices + faces;
+  for (const char* begin : {"", "\xEF\xBB\xBF"}) {
+    Write("objects/coloured.ply", begin + text);
+    ExpectEll(Load(std::string("<mesh filename=\"coloured.ply\"") + kMillimetres));
+  }
 }
 
 /// A PLY file of the L, and of what other programs add to it.

@@ -82,6 +82,31 @@ TEST_F(WildTest, AMomentAboveThatOfALinksSizeIsTold) {
 }
 
 // A finger of links that all have what an exporter wrote for want of masses.
+TEST_F(WildTest, GramsForKilogramsInALinkAreTold) {
+  const auto told = [](const LoadedScenario& loaded) {
+    return std::ranges::any_of(loaded.report.warnings, [](const ModelWarning& warning) {
+      return warning.Line().find("mini.urdf:9: link \"tip\": <mass> = 10 kg in ") !=
+                 std::string::npos &&
+             warning.text.find("more than 25000 (grams for kilograms") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(told(LoaderTest::Load()));
+  EditHand("<mass value=\"0.01\"/>", "<mass value=\"10\"/>");
+  EXPECT_TRUE(told(LoaderTest::Load()));
+}
+
+TEST_F(WildTest, ANegativeMassIsToldOnce) {
+  EditHand("<mass value=\"0.01\"/>", "<mass value=\"-0.01\"/>");
+  try {
+    LoaderTest::Load();
+    FAIL() << "was not refused";
+  } catch (const ModelError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("<mass> = -0.01; must be > 0"), std::string::npos) << text;
+    EXPECT_EQ(text.find("<mass> = 0;"), std::string::npos) << text;
+  }
+}
+
 TEST_F(WildTest, TheSameMomentInAllAxesOfSeveralLinksIsAPlaceholder) {
   std::string links, joints, parent = "palm";
   for (const char* name : {"a", "b", "tip"}) {
@@ -132,6 +157,15 @@ TEST_F(WildTest, AMeshThatIsNotThereIsTheOnlyMistakeOfItsLink) {
   }
 }
 
+TEST_F(WildTest, AMeshWhoseNameDiffersByCapitalsIsFound) {
+  Write("hands/Upper.OBJ", kTetrahedron);
+  EditHand("<box size=\"0.01 0.01 0.04\"/>", "<mesh filename=\"upper.obj\"/>");
+  ExpectRefused({"\"upper.obj\": file not found, but ", "Upper.OBJ is there"});
+  LoadOptions options;
+  options.fill_missing_meshes = true;
+  EXPECT_EQ(LoadScenario("mini", "", {root_}, options).report.fits.size(), 1u);
+}
+
 // Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
 TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
   EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"-0.29 0.001 0.17\"/>");
@@ -171,7 +205,13 @@ TEST_F(WildTest, PathsOfOtherSystems) {
   fs::create_directories(elsewhere);
   fs::copy(root_ / "objects/meshes/ell.obj", elsewhere);
   const std::string mesh = "<mesh filename=\"model://ell_description/meshes/ell.obj\"/>";
-  EXPECT_NE(Refusal(mesh).find("$GAZEBO_MODEL_PATH"), std::string::npos) << Refusal(mesh);
+  EXPECT_NE(
+      Refusal(mesh).find("$GAZEBO_MODEL_PATH, but \"meshes/ell.obj\" is there: name that instead"),
+      std::string::npos)
+      << Refusal(mesh);
+  for (const char* name : {"package://", "package:///", "package://ell_description"})
+    EXPECT_NE(Refusal(fmt::format("<mesh filename=\"{}\"/>", name)).find("$ROS_PACKAGE_PATH"),
+              std::string::npos);
   ::setenv("GAZEBO_MODEL_PATH", ("/nowhere:" + root + "/elsewhere").c_str(), 1);
   ExpectEll(Load(mesh));
   ::unsetenv("GAZEBO_MODEL_PATH");
@@ -197,8 +237,12 @@ TEST_F(WildTest, XacroThatHasNotBeenRunIsNamed) {
   EXPECT_NE(refusal.find("run xacro over the file first"), std::string::npos) << refusal;
   refusal = Refusal(sphere, "<xacro:ball_inertia m=\"1\"/>");
   EXPECT_NE(refusal.find("<xacro:ball_inertia> in <link>"), std::string::npos) << refusal;
-  refusal = Refusal("<sphere radius=\"${r}\"/>");
-  EXPECT_NE(refusal.find("run xacro"), std::string::npos) << refusal;
+  for (const char* shape :
+       {"<sphere radius=\"${r}\"/>", "<mesh filename=\"$(find a_hand)/a.stl\"/>",
+        "<mesh filename=\"package://a_hand/${side}.stl\"/>"}) {
+    refusal = Refusal(shape);
+    EXPECT_NE(refusal.find("run xacro"), std::string::npos) << refusal;
+  }
 }
 
 TEST_F(WildTest, FilesOfOtherKindsAreNamed) {

@@ -128,6 +128,22 @@ TEST_F(Mcap, ReadsTheGoodChunksAndNamesTheBadOne) {
   EXPECT_NE(LossText(loss).find("checksum"), std::string::npos);
 }
 
+TEST_F(Mcap, AChunkTakenOutOrPutInTwiceIsTold) {
+  WriteSome();
+  const std::string bytes = Bytes();
+  const std::string chunk = bytes.substr(flushed[0], flushed[1] - flushed[0]);
+  const auto cause = [&](const std::string& changed) {
+    Replace(changed);
+    const McapSummary summary = ReadMcap(path, [](const McapMessage&) {});
+    return summary.lost.empty() ? "nothing" : summary.lost[0].cause;
+  };
+  EXPECT_EQ(cause(bytes), "nothing");
+  EXPECT_EQ(cause(Bytes().erase(flushed[0], chunk.size())),
+            "the file counts 30 messages, 20 were found");
+  EXPECT_EQ(cause(std::string(bytes).insert(flushed[1], chunk)),
+            "the file counts 30 messages, 40 were found");
+}
+
 TEST_F(Mcap, OneTurnedBitAnywhereCostsAtMostOneChunk) {
   WriteSome();
   const std::string whole = Bytes();
