@@ -5,6 +5,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/hand/mesh_path.h"
 #include "core/hand/primitive_mesh.h"
 #include "core/hand/shape_fit.h"
 #include "core/hand/urdf_values.h"
@@ -97,11 +98,12 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
       beside = directory / geometry.mesh.filename();
   if (beside.empty()) beside = OtherCase(geometry.mesh);
   if (!options_.fill_missing_meshes) {
-    problems_->Add(
-        geometry.line, "{}: <mesh> filename = {}: file not found{}; --fill-missing-meshes takes {}",
-        LinkElement(in.name), Quoted(geometry.mesh_name),
-        beside.empty() ? "" : ", but " + beside.lexically_normal().string() + " is there",
-        beside.empty() ? "a capsule along the link" : "that");
+    problems_->Add(geometry.line,
+                   "{}: <mesh> filename = {}: file not found{}; --fill-missing-meshes takes {}",
+                   LinkElement(in.name), Quoted(geometry.mesh_name),
+                   beside.empty() ? WherePackagesAre(geometry.mesh_name)
+                                  : ", but " + beside.lexically_normal().string() + " is there",
+                   beside.empty() ? "a capsule along the link" : "that");
     return {};
   }
   if (!beside.empty())

@@ -37,16 +37,16 @@ fs::path InPackage(const fs::path& urdf, std::string_view name, const char* vari
   return {};
 }
 
-/// Where NAME/REST stands without its package, as it is often published; "" where it does not.
-std::string WithoutPackage(const fs::path& urdf, std::string_view name) {
+/// REST where its package is not there, as hands are often published: beside the URDF file or one
+/// directory up; where there is no such file, where the first would be.
+fs::path WithoutPackage(const fs::path& urdf, std::string_view name) {
   const std::size_t slash = name.find('/');
-  if (slash == std::string_view::npos) return "";
+  if (slash == std::string_view::npos || slash == 0 || slash + 1 == name.size()) return {};
   const fs::path inside = name.substr(slash + 1);
   std::error_code ignored;
   for (const fs::path& way : {inside, ".." / inside})
-    if (fs::is_regular_file(urdf.parent_path() / way, ignored))
-      return fmt::format(", but \"{}\" is there: name that instead", way.string());
-  return "";
+    if (fs::is_regular_file(urdf.parent_path() / way, ignored)) return urdf.parent_path() / way;
+  return urdf.parent_path() / inside;
 }
 
 }  // namespace
@@ -63,11 +63,11 @@ fs::path ResolveMesh(const fs::path& urdf, const std::string& name, std::string*
        {std::pair{kPackage, "ROS_PACKAGE_PATH"}, std::pair{kModel, "GAZEBO_MODEL_PATH"}}) {
     if (!text.starts_with(scheme)) continue;
     const std::string_view named = text.substr(scheme.size());
-    const fs::path file = InPackage(urdf, named, variable);
+    fs::path file = InPackage(urdf, named, variable);
+    if (file.empty()) file = WithoutPackage(urdf, named);
     if (file.empty())
-      *why = fmt::format("the {} is in no directory above the file and not in ${}{}",
-                         scheme == kModel ? "model" : "package", variable,
-                         WithoutPackage(urdf, named));
+      *why = fmt::format("must be {}NAME/FILE, NAME a directory above the file or in ${}", scheme,
+                         variable);
     return file;
   }
   if (text.find("://") != std::string_view::npos) {
@@ -84,6 +84,14 @@ fs::path ResolveMesh(const fs::path& urdf, const std::string& name, std::string*
     if (fs::is_regular_file(file, ignored)) return file;
   }
   return urdf.parent_path() / name;
+}
+
+std::string WherePackagesAre(std::string_view name) {
+  if (name.starts_with("package://"))
+    return ", nor its package in a directory above the file or in $ROS_PACKAGE_PATH";
+  if (name.starts_with("model://"))
+    return ", nor its model in a directory above the file or in $GAZEBO_MODEL_PATH";
+  return "";
 }
 
 }  // namespace regrasp

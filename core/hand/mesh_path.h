@@ -4,15 +4,20 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace regrasp {
 
 /// The file behind `name`, written in the URDF file `urdf`: a path (relative to the URDF file, or
 /// absolute), file://PATH, package://NAME/REST or model://NAME/REST. A package is the nearest
 /// directory above the URDF file that is called NAME or holds one of that name, else a directory of
-/// $ROS_PACKAGE_PATH (model://: of $GAZEBO_MODEL_PATH). Whether the file is there is not looked at.
+/// $ROS_PACKAGE_PATH (model://: of $GAZEBO_MODEL_PATH); where there is none, REST beside the URDF
+/// file or one directory up. Whether the file is there is for the caller to find out.
 /// An empty path where nothing can be meant: then `why` says what is allowed.
 std::filesystem::path ResolveMesh(const std::filesystem::path& urdf, const std::string& name,
                                   std::string* why);
+
+/// What else was looked for where the file behind such a name is not found; empty for a plain path.
+std::string WherePackagesAre(std::string_view name);
 
 }  // namespace regrasp

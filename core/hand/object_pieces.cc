@@ -1,6 +1,13 @@
 #include "core/hand/object_pieces.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "core/hand/mesh_path.h"
 #include "core/hand/primitive_mesh.h"
+#include "core/hand/urdf_values.h"
 
 namespace regrasp {
 namespace {
@@ -17,6 +24,11 @@ TriangleMesh MeshOf(const UrdfGeometry& geometry) {
     case UrdfGeometry::Kind::kMesh:
       break;
   }
+  std::error_code ignored;
+  if (const std::string where = WherePackagesAre(geometry.mesh_name);
+      !where.empty() && !std::filesystem::exists(geometry.mesh, ignored))
+    throw ModelError(
+        fmt::format("<mesh> filename = {}: file not found{}", Quoted(geometry.mesh_name), where));
   return LoadClosedMesh(geometry.mesh, geometry.scale);
 }
 

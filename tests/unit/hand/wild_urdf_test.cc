@@ -166,6 +166,15 @@ TEST_F(WildTest, AMeshWhoseNameDiffersByCapitalsIsFound) {
   EXPECT_EQ(LoadScenario("mini", "", {root_}, options).report.fits.size(), 1u);
 }
 
+TEST_F(WildTest, AMeshWhosePackageIsNotThereCanBeFilled) {
+  EditHand("<box size=\"0.01 0.01 0.04\"/>",
+           "<mesh filename=\"package://mini_hand/meshes/gone.obj\"/>");
+  ExpectRefused({"package://mini_hand/meshes/gone.obj", "not found", "--fill-missing-meshes"});
+  LoadOptions options;
+  options.fill_missing_meshes = true;
+  EXPECT_NO_THROW(LoadScenario("mini", "", {root_}, options));
+}
+
 // Published with a slip of the decimal point: the centre of a finger of 50 mm 300 mm away.
 TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
   EditHand("<origin xyz=\"0 0 0.02\"/>", "<origin xyz=\"-0.29 0.001 0.17\"/>");
@@ -205,10 +214,10 @@ TEST_F(WildTest, PathsOfOtherSystems) {
   fs::create_directories(elsewhere);
   fs::copy(root_ / "objects/meshes/ell.obj", elsewhere);
   const std::string mesh = "<mesh filename=\"model://ell_description/meshes/ell.obj\"/>";
-  EXPECT_NE(
-      Refusal(mesh).find("$GAZEBO_MODEL_PATH, but \"meshes/ell.obj\" is there: name that instead"),
-      std::string::npos)
-      << Refusal(mesh);
+  ExpectEll(Load(mesh));  // without its package, as it is often published
+  const std::string gone =
+      Refusal("<mesh filename=\"package://ell_description/meshes/gone.obj\"/>");
+  EXPECT_NE(gone.find("gone.obj\": file not found, nor its package"), std::string::npos) << gone;
   for (const char* name : {"package://", "package:///", "package://ell_description"})
     EXPECT_NE(Refusal(fmt::format("<mesh filename=\"{}\"/>", name)).find("$ROS_PACKAGE_PATH"),
               std::string::npos);
