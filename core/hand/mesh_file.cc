@@ -19,13 +19,12 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 
+#include "core/hand/mesh_path.h"
+#include "core/hand/mesh_text.h"
 #include "core/hand/ply_file.h"
 #include "core/hand/stl_file.h"
 
@@ -50,11 +49,6 @@ struct Kind {
   std::string suffix;                       ///< in lower case
   std::optional<std::uint64_t> stl_rest{};  ///< of a binary STL file: BinaryStlRest
 };
-
-std::string InLowerCase(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 // ---- in the child ----
 
@@ -148,21 +142,6 @@ void SendMesh(int out, const RawMesh& mesh) {
   Send(out, &header, sizeof(header));
   Send(out, mesh.vertices.data(), mesh.vertices.size() * sizeof(Eigen::Vector3f));
   Send(out, mesh.triangles.data(), mesh.triangles.size() * sizeof(Eigen::Vector3i));
-}
-
-/// What assimp shall read instead of the file, or "": it takes a byte order mark for the first word
-/// and knows an STL file in words by small letters only.
-std::string TextForAssimp(const std::string& file, const std::string& suffix) {
-  constexpr std::string_view kBom = "\xEF\xBB\xBF", kSolid = "SOLID";
-  std::ifstream in(file, std::ios::binary);
-  std::string begin(kSolid.size(), '\0');
-  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  const bool bom = begin.starts_with(kBom), capitals = suffix == ".stl" && begin == kSolid;
-  if (!bom && !capitals) return "";
-  in.clear();
-  in.seekg(bom ? kBom.size() : 0);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  return suffix == ".stl" ? InLowerCase(text) : text;
 }
 
 void ReadByAssimp(int out, const std::string& file, const std::string& suffix,
@@ -298,14 +277,7 @@ Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
     Fail(file, fmt::format("a mesh file cannot end in \"{}\"; allowed are {}", suffix,
                            fmt::join(kSuffixes, ", ")));
   std::error_code error;
-  if (fs::is_directory(file, error)) Fail(file, "is a directory; must be a mesh file");
-  if (!fs::is_regular_file(file, error)) {
-    const fs::path other = OtherCase(file);
-    Fail(file,
-         "mesh file not found" + (other.empty() ? ""
-                                                : fmt::format("; did you mean {}? Capitals count",
-                                                              other.filename().string())));
-  }
+  if (const std::string why = WhyNoFile(file); !why.empty()) Fail(file, why);
   const auto size = fs::file_size(file, error);
   if (error || size > limits.file_bytes)
     Fail(file,
@@ -319,16 +291,6 @@ Kind CheckFile(const fs::path& file, const MeshLimits& limits) {
 }
 
 }  // namespace
-
-fs::path OtherCase(const fs::path& file) {
-  std::error_code error;
-  const std::string name = InLowerCase(file.filename().string());
-  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(directory, error))
-    if (InLowerCase(entry.path().filename().string()) == name && entry.is_regular_file(error))
-      return entry.path();
-  return {};
-}
 
 RawMesh DecodeMesh(const fs::path& file, std::span<const std::byte> bytes,
                    const MeshLimits& limits) {

@@ -32,10 +32,6 @@ struct MeshLimits {
 /// Reads an .obj, .stl, .ply, .dae or .glb file (by its suffix, in either case). Throws ModelError.
 RawMesh ReadMeshFile(const std::filesystem::path& file, const MeshLimits& limits = {});
 
-/// The file beside `file` whose name differs by capitals only, which other systems take for the
-/// same; empty where there is none.
-std::filesystem::path OtherCase(const std::filesystem::path& file);
-
 /// What the child sends back, read with every count and index checked. Throws ModelError, whose
 /// message begins with `file`. For ReadMeshFile and its tests.
 RawMesh DecodeMesh(const std::filesystem::path& file, std::span<const std::byte> bytes,

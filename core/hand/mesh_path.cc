@@ -8,6 +8,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/hand/mesh_text.h"
+
 namespace regrasp {
 namespace {
 
@@ -84,6 +86,26 @@ fs::path ResolveMesh(const fs::path& urdf, const std::string& name, std::string*
     if (fs::is_regular_file(file, ignored)) return file;
   }
   return urdf.parent_path() / name;
+}
+
+fs::path OtherCase(const fs::path& file) {
+  std::error_code error;
+  const std::string name = InLowerCase(file.filename().string());
+  const fs::path directory = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (InLowerCase(entry.path().filename().string()) == name && entry.is_regular_file(error))
+      return entry.path();
+  return {};
+}
+
+std::string WhyNoFile(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) return "is a directory; must be a mesh file";
+  if (fs::is_regular_file(file, ignored)) return "";
+  const fs::path other = OtherCase(file);
+  return "mesh file not found" + (other.empty() ? ""
+                                                : fmt::format("; did you mean {}? Capitals count",
+                                                              other.filename().string()));
 }
 
 std::string WherePackagesAre(std::string_view name) {

@@ -17,6 +17,13 @@ namespace regrasp {
 std::filesystem::path ResolveMesh(const std::filesystem::path& urdf, const std::string& name,
                                   std::string* why);
 
+/// The file beside `file` whose name differs by capitals only, which other systems take for the
+/// same; empty where there is none.
+std::filesystem::path OtherCase(const std::filesystem::path& file);
+
+/// Why `file` is no file that can be read, or "".
+std::string WhyNoFile(const std::filesystem::path& file);
+
 /// What else was looked for where the file behind such a name is not found; empty for a plain path.
 std::string WherePackagesAre(std::string_view name);
 

@@ -9,6 +9,7 @@
 namespace regrasp {
 
 inline constexpr auto kClockWords = std::to_array<std::string_view>({"continuous", "lockstep"});
-inline constexpr auto kStepperWords = std::to_array<std::string_view>({"auto", "exact", "fast", "round"});
+inline constexpr auto kStepperWords =
+    std::to_array<std::string_view>({"auto", "exact", "fast", "round"});
 
 }  // namespace regrasp
