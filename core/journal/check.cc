@@ -65,7 +65,7 @@ struct Plausible {
   }
   void operator()(const char*, bool) const {}
   void operator()(const char* key, Stepper value) const {
-    CheckRange(key, static_cast<double>(value), 0, 1);
+    CheckRange(key, static_cast<double>(value), 0, static_cast<double>(kLastStepper));
   }
 };
 

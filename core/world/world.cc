@@ -216,8 +216,8 @@ std::string_view Name(Stepper stepper) {
 }
 
 std::optional<Stepper> StepperNamed(std::string_view name) {
-  for (const Stepper stepper : {Stepper::kFast, Stepper::kExact, Stepper::kRound})
-    if (name == Name(stepper)) return stepper;
+  for (int i = 0; i <= static_cast<int>(kLastStepper); ++i)
+    if (name == Name(static_cast<Stepper>(i))) return static_cast<Stepper>(i);
   return std::nullopt;
 }
 

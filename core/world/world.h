@@ -27,8 +27,9 @@ enum class Stepper {
   kRound,  ///< the fast step with the friction cone instead of ODE's pyramid, which is up to √2 as
            ///< strong along its diagonals
 };
-std::string_view Name(Stepper stepper);  ///< "fast", "exact", "round"
-std::optional<Stepper> StepperNamed(std::string_view name);
+inline constexpr Stepper kLastStepper = Stepper::kRound;
+std::string_view Name(Stepper stepper);                      ///< "fast", "exact", "round"
+std::optional<Stepper> StepperNamed(std::string_view name);  ///< nothing for another word
 
 struct WorldConfig {
   double dt = 1e-3;  ///< step [s]

@@ -120,6 +120,19 @@ TEST_F(Checkpoints, BringTheirStepperWithThemAndStatusTellsIt) {
   }
 }
 
+TEST_F(Checkpoints, AreReadBackWhateverTheStepper) {
+  for (const char* stepper : {"exact", "round"}) {
+    client.reset();
+    Finish();
+    config.stepper = stepper;
+    Start();
+    client = Connect();
+    client->Result("checkpoint.save", {{"name", stepper}});
+    EXPECT_EQ(Restore({{"name", stepper}})["state"], "done") << stepper;
+    EXPECT_EQ(client->Result("status")["stepper"], stepper);
+  }
+}
+
 TEST_F(Checkpoints, ThatWereChangedAreRefusedAtTheTickAndThePresentRunGoesOn) {
   SaveInTheGrasp();
   const std::string path = saved["path"];

@@ -84,7 +84,7 @@ TEST(Check, RefusesEveryIndexThatIsNone) {
           {"/model/hand/fingers/0/joints/0", {-1, 99, 1}},
           {"/model/hand/links/0/parent_joint", {0}},
           {"/model/object/kind", {-1, 9, 259}},
-          {"/world/stepper", {-1, 2, 256}},
+          {"/world/stepper", {-1, 3, 256}},
           {"/world/dt_s", {0, -1, 1e-300, 1}},
           {"/model/object/mass", {0, -1, 1e9}},
           {"/model/object/friction", {-0.1, 1.1}},
