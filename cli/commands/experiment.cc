@@ -11,6 +11,7 @@
 #include "cli/experiment/summary.h"
 #include "cli/experiment/tables.h"
 #include "cli/grammar/units.h"
+#include "core/protocol/start_words.h"
 
 namespace regrasp::cli {
 namespace {
@@ -148,7 +149,7 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
   cases.repeated = true;
   Arg stepper = TextArg("stepper", "--stepper", "NAME",
                         "fast; exact: the slow reference; round: friction cone", "fast");
-  stepper.values = {"fast", "exact", "round"};
+  stepper.values.assign(kSteppers.begin(), kSteppers.end());
   for (const Arg& arg :
        {TextArg("noise", "--noise", "NAMES", "presets of sensor noise, separated by commas", noise),
         Number("seed", "--seed", ArgKind::kInteger, "N", "seed of the first trial", 0,

@@ -17,7 +17,7 @@ namespace regrasp::cli {
 namespace {
 
 constexpr std::int64_t kExploreLimit = 60000, kPhiLook = 10;  // [ticks]
-constexpr int kPhiLooks = 30;
+constexpr int kPhiLooks = 30;                                 // 0.3 s
 constexpr std::int64_t kRotateChunk = 1000, kLookChunk = 100;
 constexpr std::int64_t kLongestWatched = 300000;  // of a turn that is looked at
 constexpr std::int64_t kRotateLimitPerTurn = 1000000, kRotateLimit = 30000;
@@ -46,7 +46,7 @@ double Distance(const Json& a, const Json& b) {
 
 Json ObjectPlace(SteppedDaemon* daemon) { return daemon->Call("truth").at("object").at("p_WO_m"); }
 
-/// When phi has first been enough for 0.3 s on average: a turn of the dither, which swings it.
+/// When phi has first been enough on average over 0.3 s, about a turn of the dither that swings it.
 class NearBest {
  public:
   void Look(double phi, double enough) {

@@ -14,11 +14,12 @@ namespace regrasp {
 int BodyLine(const UrdfLink& link);
 
 /// Looks at every link of `hand` but the palm; `file` has a link of each one's name, whose
-/// <inertial> is the first part of the body. Three findings: a body that cannot be (WhyNoBody) is
-/// added to `problems`; one that hardly can be (WhyUnlikely), and a moment that three links or more
-/// have in all axes, which exporters write for want of masses, are warned of. With
+/// <inertial> is the first part of the body. Findings: a body that cannot be (WhyNoBody) is added
+/// to `problems`; one that hardly can be (WhyUnlikely), and a moment that three links or more have
+/// in all axes, which exporters write for want of masses, are warned of. With
 /// `options.inertia_from_shape` such a link gets the body of its shape instead (InventBody), and
-/// each is only warned of.
+/// each is only warned of. A mass that no material has in its shapes (WhyTooHeavy) is warned of in
+/// any case and kept; a negative one has been told where it was read.
 void CheckBodies(const UrdfFile& file, const LoadOptions& options, HandModel* hand,
                  Problems* problems);
 

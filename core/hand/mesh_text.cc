@@ -4,7 +4,6 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
-#include <string_view>
 
 namespace regrasp {
 
@@ -14,14 +13,15 @@ std::string InLowerCase(std::string text) {
 }
 
 std::string TextForAssimp(const std::string& file, const std::string& suffix) {
-  constexpr std::string_view kBom = "\xEF\xBB\xBF", kSolid = "SOLID";
+  constexpr std::string_view kSolid = "SOLID";
   std::ifstream in(file, std::ios::binary);
   std::string begin(kSolid.size(), '\0');
   in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  const bool bom = begin.starts_with(kBom), capitals = suffix == ".stl" && begin == kSolid;
+  const bool bom = begin.starts_with(kByteOrderMark),
+             capitals = suffix == ".stl" && begin == kSolid;
   if (!bom && !capitals) return "";
   in.clear();
-  in.seekg(bom ? kBom.size() : 0);
+  in.seekg(bom ? kByteOrderMark.size() : 0);
   std::string text(std::istreambuf_iterator<char>(in), {});
   return suffix == ".stl" ? InLowerCase(text) : text;
 }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "core/hand/mesh_text.h"
 #include "core/hand/urdf_values.h"
 
 namespace regrasp {
@@ -31,7 +32,7 @@ PlyHeader ParseHeader(const std::string& text) {
   std::vector<PlyElement>& elements = header.elements;
   constexpr std::size_t kLongest = 64 << 10;
   bool formatted = false, first = true;
-  if (text.starts_with("\xEF\xBB\xBF")) header.bytes = 3;  // a byte order mark
+  if (text.starts_with(kByteOrderMark)) header.bytes = kByteOrderMark.size();
   while (true) {
     const std::size_t end = text.find_first_of("\r\n", header.bytes);
     if (end == std::string::npos || end > kLongest) Fail("the header has no end_header");

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/hand/mesh_text.h"
+
 namespace regrasp {
 namespace {
 
@@ -42,7 +44,7 @@ bool HasAttributes(std::string_view bytes, std::size_t triangles) {
 
 /// As text does, behind a byte order mark or not.
 bool BeginsAsText(std::string_view head) {
-  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  if (head.starts_with(kByteOrderMark)) head.remove_prefix(kByteOrderMark.size());
   return head.starts_with("solid") || head.starts_with("SOLID");
 }
 

@@ -9,6 +9,9 @@
 namespace regrasp {
 
 inline constexpr auto kClockWords = std::to_array<std::string_view>({"continuous", "lockstep"});
+/// Of core/world's Stepper.
+inline constexpr auto kSteppers = std::to_array<std::string_view>({"fast", "exact", "round"});
+/// What `regraspd --stepper` takes, in alphabetical order.
 inline constexpr auto kStepperWords =
     std::to_array<std::string_view>({"auto", "exact", "fast", "round"});
 

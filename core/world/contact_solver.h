@@ -3,15 +3,16 @@
 /// The forces of soft contacts with dry friction. For the rows r of a linear map A from forces to
 /// velocities, find f with
 ///
-///   normal:    (A f + rate + softness f)_r = 0 and f_r >= 0, or f_r = 0 where the left side is >
-///   0, friction:  the same and |f_r| <= mu f_normal(r), or f_r at the bound that opposes the
-///   motion.
+///   normal:    s_r = 0 and f_r >= 0, or f_r = 0 where s_r > 0,
+///   friction:  s_r = 0 and |f_r| <= mu f_normal(r), or f_r at the bound against the motion,
+///
+/// where s = A f + rate + softness f is the speed along the rows.
 ///
 /// These are the equations of ODE's contact joints: a spring and damper along the normal, the
 /// friction pyramid across it. With the friction cone instead, the bound is on the two friction
-/// rows r and s of a contact together,
+/// rows r and t of a contact together,
 ///
-///   cone:      |(f_r, f_s)| <= mu f_normal(r), and against the motion where at the bound.
+///   cone:      (s_r, s_t) = 0 and |(f_r, f_t)| <= mu f_normal(r), or at the bound against it.
 ///
 /// Method: projected Gauss-Seidel in turn with direct solutions for the rows that are not at a
 /// bound [Silcowitz, Niebe, Erleben, "Projected Gauss-Seidel subspace minimization method for
@@ -45,7 +46,8 @@ class ContactSolver {
   }
   int rows() const { return static_cast<int>(rate.size()); }
 
-  /// Starts from the forces in `force`. Returns the sweeps it took.
+  /// Starts from the forces in `force`. `friction`: mu; `cone`: instead of the pyramid. Returns the
+  /// sweeps it took.
   int Solve(double friction, bool cone, const ContactSolverLimits& limits) {
     cone_ = cone;
     for (int r = 0; r < rows(); ++r) inverse_[r] = 1.0 / (A(r, r) + softness[r]);
@@ -101,7 +103,7 @@ class ContactSolver {
     return change;
   }
 
-  /// The left side of a row's equation with the present forces [m/s].
+  /// s_r, the speed along a row with the present forces [m/s].
   double Speed(int r) const {
     const int n = rows();
     double speed = rate[r] + softness[r] * force[r];

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "core/protocol/start_words.h"
+#include "core/world/world.h"
 #include "daemon/config/reload.h"
 #include "tests/protocol/daemon_fixture.h"
 
@@ -22,6 +25,18 @@ std::string Complaint(const std::string& text, DaemonConfig* config) {
   } catch (const ConfigError& e) {
     return e.what();
   }
+}
+
+TEST(StepperNames, OfTheProtocolAreThoseOfTheWorld) {
+  EXPECT_EQ(kSteppers.size(), static_cast<std::size_t>(kLastStepper) + 1);
+  EXPECT_EQ(kStepperWords.size(), kSteppers.size() + 1);
+  for (const std::string_view name : kSteppers) {
+    const auto stepper = StepperNamed(name);
+    ASSERT_TRUE(stepper) << name;
+    EXPECT_EQ(Name(*stepper), name);
+    EXPECT_TRUE(std::ranges::find(kStepperWords, name) != kStepperWords.end()) << name;
+  }
+  EXPECT_FALSE(StepperNamed("auto"));
 }
 
 TEST(Config, ReadsEveryKey) {
