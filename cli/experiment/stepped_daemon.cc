@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "cli/client/errors.h"
 #include "cli/print/print.h"
@@ -29,6 +31,11 @@ bool Running(const Json& record) {
 
 SteppedDaemon::SteppedDaemon(std::vector<std::string> arguments)
     : daemon_(WithSpeed(std::move(arguments))), client_(daemon_.socket(), kNoLimit) {}
+
+SteppedDaemon::~SteppedDaemon() {
+  std::error_code gone_already;
+  if (!start_file_.empty()) std::filesystem::remove(start_file_, gone_already);
+}
 
 void SteppedDaemon::Step(std::int64_t ticks) { Step({{"ticks", ticks}}); }
 
@@ -81,7 +88,7 @@ Json SteppedDaemon::Grasp(std::int64_t seed) {
   Call("reset", {{"seed", seed}});
   grasp_ = Run("grasp", Json::object(), kGraspLimit, kGraspLimit);
   if (Done(grasp_)) {
-    Call("checkpoint.save", {{"name", kStart}});
+    start_file_ = Plain(At(Call("checkpoint.save", {{"name", kStart}}), "path"));
     start_ = std::move(start);
   }
   return grasp_;

@@ -17,6 +17,8 @@ class SteppedDaemon {
  public:
   /// Starts a paused daemon at full speed. `arguments` go to it as they are. Throws CliError.
   explicit SteppedDaemon(std::vector<std::string> arguments);
+  /// The start that was kept goes with it.
+  ~SteppedDaemon();
 
   Json Call(const std::string& method, const Json& params = Json::object()) {
     return client_.Call(method, params);
@@ -44,6 +46,7 @@ class SteppedDaemon {
   Json start_;  ///< what the last grasp began from: seed, object, noise, parameters; null: none is
                 ///< kept
   Json grasp_;  ///< its record
+  std::string start_file_;  ///< the checkpoint that keeps what it led to
   PrivateDaemon daemon_;
   Client client_;
 };
