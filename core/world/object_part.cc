@@ -64,10 +64,10 @@ int ObjectPart::MeshContact(const CollisionPart& part, dContactGeom* out) const 
   // The normal runs from the surface to the capsule's core; where the core has gone under the
   // surface the two change places.
   const Vector3d gap = closest->p_OSegment - closest->p_OSurface;
-  const bool inside = gap.dot(closest->face_normal_O) < 0;
+  const bool inside = gap.dot(closest->outward_O) < 0;
   const double distance = inside ? -closest->distance : closest->distance;
   const Vector3d normal_O =
-      closest->distance > 1e-9 ? Vector3d(gap / distance) : closest->face_normal_O;
+      closest->distance > 1e-9 ? Vector3d(gap / distance) : closest->outward_O;
   const double depth = part.radius - distance;
   const Vector3d p_W = R_WO * (closest->p_OSurface - 0.5 * depth * normal_O) + p_WM;
   const Vector3d normal_W = R_WO * normal_O;

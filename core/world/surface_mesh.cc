@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -18,6 +19,15 @@ struct PointPair {
   Vector3d on_triangle;
 };
 
+/// A pair whose second point is so far along an edge of a triangle, from 0 to 1.
+struct EdgePair : PointPair {
+  double along;
+};
+
+double AngleBetween(const Vector3d& u, const Vector3d& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
 double Clamp01(double x) { return std::clamp(x, 0.0, 1.0); }
 
 double SquaredDistanceToSegment(const Vector3d& p, const Vector3d& a, const Vector3d& ab,
@@ -28,8 +38,8 @@ double SquaredDistanceToSegment(const Vector3d& p, const Vector3d& a, const Vect
 
 // Closest points of the segments a + s u and c + t v, s and t in [0, 1]
 // [Ericson, Real-Time Collision Detection, 5.1.9].
-PointPair ClosestOfSegments(const Vector3d& a, const Vector3d& u, const Vector3d& c,
-                            const Vector3d& v) {
+EdgePair ClosestOfSegments(const Vector3d& a, const Vector3d& u, const Vector3d& c,
+                           const Vector3d& v) {
   const Vector3d r = a - c;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), vr = v.dot(r);
   double s = 0, t = 0;
@@ -45,7 +55,7 @@ PointPair ClosestOfSegments(const Vector3d& a, const Vector3d& u, const Vector3d
       s = Clamp01((uv * t - ur) / uu);
     }
   }
-  return {a + s * u, c + t * v};
+  return {{a + s * u, c + t * v}, t};
 }
 
 bool InsidePrism(const Vector3d& p, const Vector3d (&v)[3], const Vector3d& normal) {
@@ -62,16 +72,32 @@ SurfaceMesh::SurfaceMesh(const std::vector<Vector3d>& vertices_O,
                          const std::vector<Eigen::Vector3i>& triangles) {
   // Two triangles share an edge; only the first one needs to test it.
   std::set<std::pair<int, int>> seen;
+  std::vector<Eigen::Vector3i> corners;  // of triangles_, as indices of vertices
+  std::map<std::pair<int, int>, Vector3d> at_edge;
+  std::vector<Vector3d> at_corner(vertices_O.size(), Vector3d::Zero());
   for (const Eigen::Vector3i& t : triangles) {
     Triangle triangle;
     for (int k = 0; k < 3; ++k) triangle.v[k] = vertices_O[t[k]];
     const Vector3d n = (triangle.v[1] - triangle.v[0]).cross(triangle.v[2] - triangle.v[0]);
     if (n.norm() <= 0) continue;  // a sliver has no area to touch
     triangle.normal = n.normalized();
-    for (int k = 0; k < 3; ++k)
-      triangle.owns_edge[k] = seen.insert(std::minmax(t[k], t[(k + 1) % 3])).second;
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3, last = (k + 2) % 3;
+      const std::pair<int, int> edge = std::minmax(t[k], t[next]);
+      triangle.owns_edge[k] = seen.insert(edge).second;
+      at_edge.try_emplace(edge, Vector3d::Zero()).first->second += triangle.normal;
+      at_corner[t[k]] += triangle.normal * AngleBetween(triangle.v[next] - triangle.v[k],
+                                                        triangle.v[last] - triangle.v[k]);
+    }
     triangles_.push_back(triangle);
+    corners.push_back(t);
   }
+  for (std::size_t i = 0; i < triangles_.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const int from = corners[i][k], to = corners[i][(k + 1) % 3];
+      triangles_[i].edge_normal[k] = at_edge.at(std::minmax(from, to)).normalized();
+      triangles_[i].corner_normal[k] = at_corner[from].normalized();
+    }
   nodes_.emplace_back();
   Build(0, 0, static_cast<int>(triangles_.size()));
 }
@@ -114,16 +140,16 @@ std::optional<SurfaceMesh::Closest> SurfaceMesh::ClosestToSegment(const Vector3d
   const double ab2 = ab.squaredNorm();
   double best2 = max_distance * max_distance;
   double best = max_distance;
-  int found = -1;
   PointPair pair{};
+  const Vector3d* outward = nullptr;
 
-  const auto offer = [&](int i, const PointPair& candidate) {
+  const auto offer = [&](const PointPair& candidate, const Vector3d& normal) {
     const double d2 = (candidate.on_segment - candidate.on_triangle).squaredNorm();
     if (d2 >= best2) return;
     best2 = d2;
     best = std::sqrt(d2);
-    found = i;
     pair = candidate;
+    outward = &normal;
   };
   const auto visit = [&](int i) {
     const Triangle& t = triangles_[i];
@@ -131,13 +157,19 @@ std::optional<SurfaceMesh::Closest> SurfaceMesh::ClosestToSegment(const Vector3d
     if (std::min(std::abs(ha), std::abs(hb)) >= best && ha * hb > 0) return;
     if (ha * hb < 0) {  // the segment may pierce the triangle
       const Vector3d x = a_O + ab * (ha / (ha - hb));
-      if (InsidePrism(x, t.v, t.normal)) return offer(i, {x, x});
+      if (InsidePrism(x, t.v, t.normal)) return offer({x, x}, t.normal);
     }
     const Vector3d foot_a = a_O - ha * t.normal, foot_b = b_O - hb * t.normal;
-    if (InsidePrism(foot_a, t.v, t.normal)) offer(i, {a_O, foot_a});
-    if (InsidePrism(foot_b, t.v, t.normal)) offer(i, {b_O, foot_b});
-    for (int k = 0; k < 3; ++k)
-      if (t.owns_edge[k]) offer(i, ClosestOfSegments(a_O, ab, t.v[k], t.v[(k + 1) % 3] - t.v[k]));
+    if (InsidePrism(foot_a, t.v, t.normal)) offer({a_O, foot_a}, t.normal);
+    if (InsidePrism(foot_b, t.v, t.normal)) offer({b_O, foot_b}, t.normal);
+    for (int k = 0; k < 3; ++k) {
+      if (!t.owns_edge[k]) continue;
+      const int next = (k + 1) % 3;
+      const EdgePair edge = ClosestOfSegments(a_O, ab, t.v[k], t.v[next] - t.v[k]);
+      offer(edge, edge.along <= 0   ? t.corner_normal[k]
+                  : edge.along >= 1 ? t.corner_normal[next]
+                                    : t.edge_normal[k]);
+    }
   };
 
   struct Open {
@@ -163,8 +195,8 @@ std::optional<SurfaceMesh::Closest> SurfaceMesh::ClosestToSegment(const Vector3d
     stack[size++] = far;
     stack[size++] = near;
   }
-  if (found < 0) return std::nullopt;
-  return Closest{pair.on_segment, pair.on_triangle, triangles_[found].normal, best};
+  if (outward == nullptr) return std::nullopt;
+  return Closest{pair.on_segment, pair.on_triangle, *outward, best};
 }
 
 }  // namespace regrasp

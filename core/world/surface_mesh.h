@@ -24,10 +24,14 @@ class SurfaceMesh {
                                                    const std::vector<Eigen::Vector3i>& triangles);
 
   struct Closest {
-    Vector3d p_OSegment = Vector3d::Zero();      ///< closest point of the segment [m]
-    Vector3d p_OSurface = Vector3d::Zero();      ///< closest point of the surface [m]
-    Vector3d face_normal_O = Vector3d::UnitZ();  ///< outward normal of the triangle it lies on
-    double distance = 0;                         ///< between the two [m]
+    Vector3d p_OSegment = Vector3d::Zero();  ///< closest point of the segment [m]
+    Vector3d p_OSurface = Vector3d::Zero();  ///< closest point of the surface [m]
+    /// Out of the surface there: the normal of the triangle or, at an edge or a corner, the mean of
+    /// those that meet in it, weighted by the angle that each takes up [Baerentzen and Aanaes
+    /// 2005]. Only that mean tells which side of a sharp edge a point is on: triangles whose
+    /// normals are more than 90 degrees apart do not agree.
+    Vector3d outward_O = Vector3d::UnitZ();
+    double distance = 0;  ///< between the two [m]
   };
   /// The closest pair of points of the surface and the segment a-b (a == b: a point), if nearer
   /// than `max_distance`. Exact and deterministic. Allocates nothing.
@@ -38,6 +42,7 @@ class SurfaceMesh {
   struct Triangle {
     Vector3d v[3];
     Vector3d normal;
+    Vector3d edge_normal[3], corner_normal[3];  // edge k runs from corner k to the next
     bool owns_edge[3] = {};
   };
   // A node of a tree of bounding spheres. A leaf holds triangles [first, first + count); an inner

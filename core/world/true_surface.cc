@@ -34,7 +34,7 @@ TrueSurface::Nearest TrueSurface::At(const Vector3d& p) const {
       const auto closest = mesh_->ClosestToSegment(p, p, kAnywhere);
       if (!closest) return {kAnywhere, Vector3d::UnitZ()};
       const bool inside = IsInside(vertices_O_, triangles_, p);
-      return {inside ? -closest->distance : closest->distance, closest->face_normal_O};
+      return {inside ? -closest->distance : closest->distance, closest->outward_O};
     }
   }
   return {};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/common/random.h"
+#include "core/hand/mesh.h"
 #include "core/world/surface_mesh.h"
 
 namespace regrasp {
@@ -60,7 +61,38 @@ TEST(SurfaceMesh, PiercingSegmentHasNoDistance) {
   ASSERT_TRUE(closest);
   EXPECT_NEAR(closest->distance, 0, 1e-12);
   EXPECT_NEAR(closest->p_OSurface.z(), 0.5, 1e-12);
-  EXPECT_NEAR(closest->face_normal_O.z(), 1, 1e-12);
+  EXPECT_NEAR(closest->outward_O.z(), 1, 1e-12);
+}
+
+// The edges of a regular tetrahedron and of this blade are sharper than a right angle: of the
+// triangles that meet there none alone tells outside from inside.
+TEST(SurfaceMesh, OutwardTellsTheSideAtSharpEdgesAndCorners) {
+  const std::vector<Vector3d> regular = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  const std::vector<Vector3d> blade = {{0, 0, 2}, {0.1, 0, 0}, {-0.1, 0.1, 0}, {-0.1, -0.1, 0}};
+  const std::vector<Eigen::Vector3i> faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  for (const auto& corners : {regular, blade}) {
+    const SurfaceMesh mesh(corners, faces);
+    RandomStream random(3, 0);
+    int inside = 0;
+    for (int i = 0; i < 3000; ++i) {
+      Vector3d p = Vector3d::Zero();
+      double sum = 0;  // near the surface and within: weights about those of its points
+      for (const Vector3d& corner : corners) {
+        const double weight = 1.3 * random.Uniform() - 0.3;
+        p += weight * corner, sum += weight;
+      }
+      if (sum < 0.1) continue;
+      p /= sum;
+      const auto closest = mesh.ClosestToSegment(p, p, 100);
+      ASSERT_TRUE(closest);
+      if (closest->distance < 1e-9) continue;
+      const bool is_inside = IsInside(corners, faces, p);
+      inside += is_inside;
+      ASSERT_EQ((p - closest->p_OSurface).dot(closest->outward_O) < 0, is_inside)
+          << p.transpose() << ", nearest " << closest->p_OSurface.transpose();
+    }
+    EXPECT_GT(inside, 100);
+  }
 }
 
 TEST(SurfaceMesh, IsSharedByAllThatUseTheSameMesh) {
