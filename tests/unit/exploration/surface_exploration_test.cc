@@ -5,62 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
-#include <numbers>
 #include <vector>
 
 #include "core/common/fields.h"
 #include "core/common/random.h"
+#include "tests/unit/exploration/sphere_climb.h"
 
 namespace regrasp {
 namespace {
-
-constexpr double kDt = 1e-3;
-constexpr double kRadius = 0.025;    // of the sphere that is explored [m]
-constexpr double kCurvature = 3000;  // phi = 1.5 - k |p - top|² [1/m²]: 24 /m at 4 mm
-using Status = SurfaceExploration::Status;
-
-Vector3d Top() { return kRadius * Vector3d(0.3, -0.5, 0.8).normalized(); }
-double Phi(const Vector3d& p) { return 1.5 - kCurvature * (p - Top()).squaredNorm(); }
-
-/// A point of the sphere `distance` [m] from the maximum, in some direction.
-Vector3d StartAt(double distance, RandomStream* random) {
-  const Vector3d n = Top().normalized();
-  const Vector3d t = TangentPart(random->Normal3(), n).normalized();
-  const double angle = distance / kRadius;
-  return kRadius * (std::cos(angle) * n + std::sin(angle) * t);
-}
-
-/// A finger that follows every commanded velocity at once and stays on the sphere.
-struct Follower {
-  Vector3d p;
-  double phi_noise = 0, position_noise = 0;
-  RandomStream random{99, 0};
-  SurfaceExploration::Input Sense() {
-    SurfaceExploration::Input input;
-    input.p_WC = p + position_noise * random.Normal3();
-    input.normal_W = p.normalized();
-    input.phi = Phi(p) + phi_noise * random.Normal();
-    return input;
-  }
-  void Move(const Vector3d& v) { p = kRadius * (p + v * kDt).normalized(); }
-};
-
-/// Runs until the algorithm ends. `walls` may add walls to what is sensed.
-Status Explore(SurfaceExploration* algorithm, Follower* finger, Estimator estimator,
-               std::uint64_t seed, int max_cycles, const ExplorationParameters& parameters,
-               const std::function<void(SurfaceExploration::Input*)>& walls = {},
-               const std::function<void()>& every_tick = {}) {
-  algorithm->Start(finger->Sense(), estimator, seed, max_cycles, parameters);
-  for (;;) {
-    SurfaceExploration::Input input = finger->Sense();
-    if (walls) walls(&input);
-    const Status status = algorithm->Update(input, parameters, kDt);
-    if (status != Status::kRunning) return status;
-    finger->Move(algorithm->velocity_W());
-    if (every_tick) every_tick();
-  }
-}
 
 struct Outcome {
   int rose = 0, converged = 0, best_rose = 0;
@@ -89,21 +41,6 @@ Outcome FiftySeeds(const char* name, Estimator estimator, const ExplorationParam
       "%-32s rose %d/50, converged %d/50, best point half-way up %d/50, worst end %.1f mm\n", name,
       outcome.rose, outcome.converged, outcome.best_rose, 1e3 * outcome.worst_distance);
   return outcome;
-}
-
-// What is left of the noise after the filters: 1 % of phi, 0.13 mm of position.
-constexpr double kPhiNoise = 0.01, kPositionNoise = 1.3e-4;
-
-/// Lines 6 to 8 look back over some 0.8 s (lambda: 10 updates of 50 ms; the window of the least
-/// squares). A climb is stable when it is slow against that: 2 k eta * 0.8 s < 1, with no least
-/// speed that would carry the finger over the top.
-ExplorationParameters SlowClimb() {
-  ExplorationParameters parameters;
-  parameters.lambda = 0.9;
-  parameters.eta = 1e-4;
-  parameters.speed_min = 0;
-  parameters.max_cycles = 30000;
-  return parameters;
 }
 
 TEST(SurfaceExploration, ConvergesFromFiftySeeds) {
@@ -202,74 +139,6 @@ TEST(SurfaceExploration, StopsAfterMaxCycles) {
   }
 }
 
-// Largest way into a wall: the dither's circle, and what the speed limit allows before the wall's
-// return balances it.
-double WallSlack(const ExplorationParameters& parameters) {
-  return 2 * parameters.dither_speed / (2 * std::numbers::pi * parameters.dither_hz) +
-         parameters.speed_max * kDt;
-}
-
-// The wall is sensed from one dither's circle before it on, so that it does not come and go.
-TEST(SurfaceExploration, AConstrainedMaximumConvergesAndTheWallHolds) {
-  const ExplorationParameters parameters = SlowClimb();
-  int converged = 0;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    RandomStream random(seed, 7);
-    const Vector3d start = StartAt(4e-3, &random);
-    Follower finger{start, 0, 0, RandomStream(seed, 8)};
-    // A plane half-way to the maximum, at right angles to the way there.
-    const Vector3d into = (Top() - start).normalized();
-    const double wall_at = into.dot(start) + 2e-3;
-    double deepest = -1;
-    SurfaceExploration algorithm;
-    const Status status = Explore(
-        &algorithm, &finger, Estimator::kLeastSquares, seed, 0, parameters,
-        [&](SurfaceExploration::Input* input) {
-          const double depth = into.dot(input->p_WC) - wall_at;
-          if (depth < -WallSlack(parameters)) return;
-          const Vector3d direction = TangentPart(into, input->normal_W);
-          input->walls.push_back({direction.normalized(), std::max(0.0, depth) / direction.norm()});
-        },
-        [&] { deepest = std::max(deepest, into.dot(finger.p) - wall_at); });
-    converged += status == Status::kConverged;
-    EXPECT_LT(deepest, WallSlack(parameters)) << "seed " << seed;
-    EXPECT_GT(Phi(finger.p), Phi(start)) << "seed " << seed;
-  }
-  EXPECT_EQ(converged, 10);
-}
-
-// Where the finger starts beyond a wall, it is neither pushed back nor let further in.
-TEST(SurfaceExploration, AWallBehindTheStartStandsAtTheStart) {
-  const ExplorationParameters parameters = SlowClimb();
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    RandomStream random(seed, 7);
-    Follower finger{StartAt(4e-3, &random)};
-    const Vector3d start = finger.p, into = (Top() - start).normalized();
-    constexpr double kBeyond = 2e-3;
-    const auto Depth = [&](const Vector3d& p) { return into.dot(p - start) + kBeyond; };
-    double deepest = 0;
-    SurfaceExploration algorithm;
-    const auto Sensed = [&](const Vector3d& p) {
-      const Vector3d direction = TangentPart(into, p.normalized());
-      return Wall{direction.normalized(), std::max(0.0, Depth(p)) / direction.norm()};
-    };
-    SurfaceExploration::Input input = finger.Sense();
-    input.walls.push_back(Sensed(finger.p));
-    algorithm.Start(input, Estimator::kLeastSquares, seed, 0, parameters);
-    Status status = Status::kRunning;
-    while (status == Status::kRunning) {
-      input = finger.Sense();
-      if (Depth(finger.p) >= 0) input.walls.push_back(Sensed(finger.p));
-      status = algorithm.Update(input, parameters, kDt);
-      finger.Move(algorithm.velocity_W());
-      deepest = std::max(deepest, Depth(finger.p));
-    }
-    EXPECT_EQ(status, Status::kConverged) << "seed " << seed;
-    EXPECT_LT(deepest, kBeyond + WallSlack(parameters)) << "seed " << seed;
-    EXPECT_GT(Depth(finger.p), kBeyond - WallSlack(parameters)) << "seed " << seed;
-  }
-}
-
 TEST(SurfaceExploration, StaysWithinItsExcursion) {
   ExplorationParameters parameters;
   parameters.max_excursion = 2e-3;
@@ -285,21 +154,6 @@ TEST(SurfaceExploration, StaysWithinItsExcursion) {
     // dither keeps it outside: another circle's worth.
     EXPECT_LT(farthest, parameters.max_excursion + 2 * WallSlack(parameters)) << Name(estimator);
   }
-}
-
-TEST(SurfaceExploration, TwoOpposedWallsLeaveTheFingerBetween) {
-  const ExplorationParameters parameters;
-  RandomStream random(6, 0);
-  Follower finger{StartAt(4e-3, &random)};
-  SurfaceExploration algorithm;
-  Explore(&algorithm, &finger, Estimator::kLeastSquares, 1, 2000, parameters,
-          [](SurfaceExploration::Input* input) {
-            const Matrix3d R = RotationFromZ(input->normal_W);
-            for (const double sign : {-1.0, 1.0})
-              for (const int axis : {0, 1}) input->walls.push_back({sign * R.col(axis), 0});
-          });
-  EXPECT_TRUE(finger.p.allFinite());
-  EXPECT_NEAR(algorithm.gradient_norm(), 0, 1e-9);  // nowhere to go
 }
 
 std::vector<Vector3d> Path(std::uint64_t seed, Estimator estimator) {
