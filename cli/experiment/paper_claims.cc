@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "cli/experiment/paper_tables.h"
 #include "cli/print/print.h"
@@ -20,7 +22,7 @@ constexpr double kRadiusTolerance_m = 0.001;
 constexpr double kClearDrop = 0.75;  // of stability in S_F against the mean
 
 const char* Verdict(double share) {
-  return share >= 1 ? "yes" : share >= kMostly ? "partly" : "no";
+  return share >= 1 ? "yes" : share >= kPartlyShownFrom ? "partly" : "no";
 }
 
 const char* Verdict(const Json& group, const char* count) {

@@ -9,12 +9,13 @@
 namespace regrasp::cli {
 
 /// A share of the trials from which a claim is called partly shown.
-inline constexpr double kMostly = 0.9;
+inline constexpr double kPartlyShownFrom = 0.9;
 
 struct PaperClaims {
   std::string table;  ///< in Markdown, and the commands below it
   std::string count;  ///< "12 yes, 2 partly, 1 no"
 };
+/// Throws where a summary or a figure that a claim needs is not there.
 PaperClaims CompareClaims(const PaperResults& results);
 
 }  // namespace regrasp::cli

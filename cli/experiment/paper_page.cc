@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "cli/experiment/paper.h"
 #include "cli/experiment/paper_claims.h"
@@ -44,7 +47,7 @@ std::string ReproductionPage(const PaperResults& r) {
       plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
       plan.at("first_seed").get<std::int64_t>() >= kFirstFreshSeed ? " were never used while tuning"
                                                                    : "",
-      claims.table, 100 * kMostly, claims.count);
+      claims.table, 100 * kPartlyShownFrom, claims.count);
   text += "## Figures\n";
   text +=
       picture("figure1.png", "Figure 1: the hand holds the sphere; arrows are true contact forces");

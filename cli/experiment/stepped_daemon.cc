@@ -14,8 +14,8 @@ namespace regrasp::cli {
 namespace {
 
 constexpr double kNoLimit = 0;
-constexpr const char* kStart = "start";      // the checkpoint of the last grasp
-constexpr std::int64_t kGraspLimit = 30000;  // [ticks]
+constexpr const char* kStart = "private-start";  // the checkpoint of the last grasp
+constexpr std::int64_t kGraspLimit = 30000;      // [ticks]
 
 std::vector<std::string> WithSpeed(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"--paused", "--speed", "max"});

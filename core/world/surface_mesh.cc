@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -66,38 +67,100 @@ bool InsidePrism(const Vector3d& p, const Vector3d (&v)[3], const Vector3d& norm
   return true;
 }
 
+/// The mean normals at the edges and corners of a mesh (SurfaceMesh::Closest::outward_O).
+class OutwardNormals {
+ public:
+  explicit OutwardNormals(const std::vector<Vector3d>& vertices)
+      : vertices_(vertices), at_corner_(vertices.size(), Vector3d::Zero()) {}
+
+  /// What a triangle adds at its corner `k` and at the edge that runs from there to the next one.
+  /// True where it is the first of that edge.
+  bool Add(const Eigen::Vector3i& corners, int k, const Vector3d& normal) {
+    const int from = corners[k], to = corners[(k + 1) % 3], last = corners[(k + 2) % 3];
+    at_corner_[from] +=
+        normal * AngleBetween(vertices_[to] - vertices_[from], vertices_[last] - vertices_[from]);
+    Edge& edge = at_edge_.try_emplace(std::minmax(from, to)).first->second;
+    edge.sum += normal;
+    return edge.triangles++ == 0;
+  }
+
+  /// A corner may lie on the edge of another triangle, where a triangle without area was between
+  /// them: that edge and its parts have one triangle each. They are one edge.
+  void JoinAcrossGaps() {
+    std::vector<std::pair<std::pair<int, int>, Vector3d>> one_sided;  // and the triangle's normal
+    for (const auto& [ends, edge] : at_edge_)
+      if (edge.triangles == 1) one_sided.emplace_back(ends, edge.sum);
+    std::set<std::pair<int, int>> joined;  // corner and edge
+    for (const auto& [ends, normal] : one_sided) {
+      const Vector3d middle = 0.5 * (vertices_[ends.first] + vertices_[ends.second]);
+      Vector3d across = Vector3d::Zero();
+      for (std::size_t i = 0; i < one_sided.size(); ++i) {
+        const auto& [other, other_normal] = one_sided[i];
+        if (other == ends) continue;
+        if (Passes(other, middle)) across += other_normal;
+        for (const int corner : {ends.first, ends.second})
+          if (corner != other.first && corner != other.second && Passes(other, vertices_[corner]) &&
+              joined.insert({corner, static_cast<int>(i)}).second)
+            at_corner_[corner] += std::numbers::pi * other_normal;
+      }
+      at_edge_.at(ends).sum += across.normalized();
+    }
+  }
+
+  /// `normal` where what meets there cancels.
+  Vector3d AtEdge(int from, int to, const Vector3d& normal) const {
+    return Direction(at_edge_.at(std::minmax(from, to)).sum, normal);
+  }
+  Vector3d AtCorner(int corner, const Vector3d& normal) const {
+    return Direction(at_corner_[corner], normal);
+  }
+
+ private:
+  struct Edge {
+    Vector3d sum = Vector3d::Zero();  // of normals
+    int triangles = 0;
+  };
+
+  static Vector3d Direction(const Vector3d& sum, const Vector3d& otherwise) {
+    constexpr double kCancelled = 1e-6;
+    return sum.norm() > kCancelled ? Vector3d(sum.normalized()) : otherwise;
+  }
+  bool Passes(const std::pair<int, int>& ends, const Vector3d& p) const {
+    constexpr double kOnEdge = 1e-8;  // [m]
+    const Vector3d &a = vertices_[ends.first], ab = vertices_[ends.second] - a;
+    return SquaredDistanceToSegment(p, a, ab, ab.squaredNorm()) < kOnEdge * kOnEdge;
+  }
+
+  const std::vector<Vector3d>& vertices_;
+  std::map<std::pair<int, int>, Edge> at_edge_;
+  std::vector<Vector3d> at_corner_;
+};
+
 }  // namespace
 
 SurfaceMesh::SurfaceMesh(const std::vector<Vector3d>& vertices_O,
                          const std::vector<Eigen::Vector3i>& triangles) {
-  // Two triangles share an edge; only the first one needs to test it.
-  std::set<std::pair<int, int>> seen;
+  OutwardNormals outward(vertices_O);
   std::vector<Eigen::Vector3i> corners;  // of triangles_, as indices of vertices
-  std::map<std::pair<int, int>, Vector3d> at_edge;
-  std::vector<Vector3d> at_corner(vertices_O.size(), Vector3d::Zero());
   for (const Eigen::Vector3i& t : triangles) {
     Triangle triangle;
     for (int k = 0; k < 3; ++k) triangle.v[k] = vertices_O[t[k]];
     const Vector3d n = (triangle.v[1] - triangle.v[0]).cross(triangle.v[2] - triangle.v[0]);
     if (n.norm() <= 0) continue;  // a sliver has no area to touch
     triangle.normal = n.normalized();
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3, last = (k + 2) % 3;
-      const std::pair<int, int> edge = std::minmax(t[k], t[next]);
-      triangle.owns_edge[k] = seen.insert(edge).second;
-      at_edge.try_emplace(edge, Vector3d::Zero()).first->second += triangle.normal;
-      at_corner[t[k]] += triangle.normal * AngleBetween(triangle.v[next] - triangle.v[k],
-                                                        triangle.v[last] - triangle.v[k]);
-    }
+    // Two triangles share an edge; only the first one needs to test it.
+    for (int k = 0; k < 3; ++k) triangle.owns_edge[k] = outward.Add(t, k, triangle.normal);
     triangles_.push_back(triangle);
     corners.push_back(t);
   }
-  for (std::size_t i = 0; i < triangles_.size(); ++i)
+  outward.JoinAcrossGaps();
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    Triangle& t = triangles_[i];
     for (int k = 0; k < 3; ++k) {
-      const int from = corners[i][k], to = corners[i][(k + 1) % 3];
-      triangles_[i].edge_normal[k] = at_edge.at(std::minmax(from, to)).normalized();
-      triangles_[i].corner_normal[k] = at_corner[from].normalized();
+      t.edge_normal[k] = outward.AtEdge(corners[i][k], corners[i][(k + 1) % 3], t.normal);
+      t.corner_normal[k] = outward.AtCorner(corners[i][k], t.normal);
     }
+  }
   nodes_.emplace_back();
   Build(0, 0, static_cast<int>(triangles_.size()));
 }

@@ -16,7 +16,7 @@ class TrueSurface {
 
   struct Nearest {
     double distance = 0;                    ///< signed, positive outside [m]
-    Vector3d normal_O = Vector3d::UnitZ();  ///< outward, of the surface there
+    Vector3d normal_O = Vector3d::UnitZ();  ///< outward, of the surface there (mean at an edge)
   };
   /// The surface nearest to a point in O; inside overlapping pieces, that of the nearest piece.
   /// Takes time in proportion to a mesh's triangles. Allocates nothing.

@@ -64,34 +64,73 @@ TEST(SurfaceMesh, PiercingSegmentHasNoDistance) {
   EXPECT_NEAR(closest->outward_O.z(), 1, 1e-12);
 }
 
-// The edges of a regular tetrahedron and of this blade are sharper than a right angle: of the
-// triangles that meet there none alone tells outside from inside.
+struct Body {
+  std::vector<Vector3d> corners;
+  std::vector<Eigen::Vector3i> faces;
+};
+const std::vector<Eigen::Vector3i> kTetrahedron = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+
+/// Bodies with edges sharper than a right angle: of the triangles that meet there none alone tells
+/// outside from inside.
+std::vector<Body> SharpBodies() {
+  const Body regular = {{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, kTetrahedron};
+  const Body blade = {{{0, 0, 2}, {0.1, 0, 0}, {-0.1, 0.1, 0}, {-0.1, -0.1, 0}}, kTetrahedron};
+  // The blade again; a fifth corner is on the edge from 0 to 1, and only one side knows of it.
+  Body gap = blade;
+  gap.corners.push_back(0.6 * gap.corners[0] + 0.4 * gap.corners[1]);
+  gap.faces = {{0, 4, 2}, {4, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+  return {regular, blade, gap};
+}
+
+/// A point near the body: a mean of its corners, some of them with a negative weight.
+Vector3d PointNear(const Body& body, RandomStream* random) {
+  for (;;) {
+    Vector3d p = Vector3d::Zero();
+    double sum = 0;
+    for (const Vector3d& corner : body.corners) {
+      const double weight = 1.3 * random->Uniform() - 0.3;
+      p += weight * corner, sum += weight;
+    }
+    if (sum > 0.1) return p / sum;
+  }
+}
+
 TEST(SurfaceMesh, OutwardTellsTheSideAtSharpEdgesAndCorners) {
-  const std::vector<Vector3d> regular = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
-  const std::vector<Vector3d> blade = {{0, 0, 2}, {0.1, 0, 0}, {-0.1, 0.1, 0}, {-0.1, -0.1, 0}};
-  const std::vector<Eigen::Vector3i> faces = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
-  for (const auto& corners : {regular, blade}) {
-    const SurfaceMesh mesh(corners, faces);
+  for (const Body& body : SharpBodies()) {
+    const SurfaceMesh mesh(body.corners, body.faces);
     RandomStream random(3, 0);
     int inside = 0;
     for (int i = 0; i < 3000; ++i) {
-      Vector3d p = Vector3d::Zero();
-      double sum = 0;  // near the surface and within: weights about those of its points
-      for (const Vector3d& corner : corners) {
-        const double weight = 1.3 * random.Uniform() - 0.3;
-        p += weight * corner, sum += weight;
-      }
-      if (sum < 0.1) continue;
-      p /= sum;
+      const Vector3d p = PointNear(body, &random);
       const auto closest = mesh.ClosestToSegment(p, p, 100);
       ASSERT_TRUE(closest);
       if (closest->distance < 1e-9) continue;
-      const bool is_inside = IsInside(corners, faces, p);
+      const bool is_inside = IsInside(body.corners, kTetrahedron, p);
       inside += is_inside;
       ASSERT_EQ((p - closest->p_OSurface).dot(closest->outward_O) < 0, is_inside)
           << p.transpose() << ", nearest " << closest->p_OSurface.transpose();
     }
     EXPECT_GT(inside, 100);
+  }
+}
+
+// The same for a capsule's core that passes by.
+TEST(SurfaceMesh, OutwardTellsTheSideOfASegment) {
+  for (const Body& body : SharpBodies()) {
+    const SurfaceMesh mesh(body.corners, body.faces);
+    RandomStream random(4, 0);
+    int outside = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vector3d a = PointNear(body, &random), b = PointNear(body, &random);
+      const auto closest = mesh.ClosestToSegment(a, b, 100);
+      ASSERT_TRUE(closest);
+      if (closest->distance < 1e-9) continue;  // pierces it
+      const bool is_inside = IsInside(body.corners, kTetrahedron, closest->p_OSegment);
+      outside += !is_inside;
+      ASSERT_EQ((closest->p_OSegment - closest->p_OSurface).dot(closest->outward_O) < 0, is_inside)
+          << a.transpose() << " to " << b.transpose();
+    }
+    EXPECT_GT(outside, 100);
   }
 }
 

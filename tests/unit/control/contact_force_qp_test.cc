@@ -12,8 +12,6 @@
 namespace regrasp {
 namespace {
 
-Vector3d RandomDirection(RandomStream* random) { return random->Normal3().normalized(); }
-
 /// Contacts on a sphere of 25 mm, normals up to some degrees off, a load of the order of an
 /// object's weight.
 ForceProblem RandomProblem(RandomStream* random, int contacts) {

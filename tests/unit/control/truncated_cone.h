@@ -4,10 +4,13 @@
 
 #include <algorithm>
 
+#include "core/common/frames.h"
 #include "core/common/random.h"
 #include "core/control/contact_force_qp.h"
 
 namespace regrasp {
+
+inline Vector3d RandomDirection(RandomStream* random) { return random->Normal3().normalized(); }
 
 inline double Uniform(RandomStream* random, double low, double high) {
   return low + (high - low) * random->Uniform();

@@ -9,8 +9,6 @@
 namespace regrasp {
 namespace {
 
-Vector3d RandomDirection(RandomStream* random) { return random->Normal3().normalized(); }
-
 TEST(ProjectOntoTruncatedCone, FulfilsTheOptimalityConditionOfAProjection) {
   RandomStream random(1, 0);
   for (int trial = 0; trial < 20000; ++trial) {

@@ -4,9 +4,11 @@
 /// what the tests of Algorithm 1 share.
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 
+#include "core/common/frames.h"
 #include "core/common/random.h"
 #include "core/exploration/surface_exploration.h"
 
