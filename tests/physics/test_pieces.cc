@@ -104,7 +104,7 @@ TEST(Pieces, DistanceIsThatOfTheNearestPiece) {
         const Vector3d p = 0.005 * Vector3d(i, j, k) + Vector3d(0.0007, 0.0003, 0.0011);
         double nearest = 1;
         int inside = 0;
-        Vector3d normal;
+        Vector3d normal = Vector3d::Zero();
         for (const Ball& b : balls) {
           const double d = (p - b.centre).norm() - b.radius;
           inside += d < 0;
