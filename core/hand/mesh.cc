@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/hand/flat_triangles.h"
+
 namespace regrasp {
 namespace {
 
@@ -61,13 +63,6 @@ class Welder {
   std::vector<int> next_;
 };
 
-/// No area: the height over the longest side is less than the welding distance.
-bool IsFlat(const TriangleMesh& mesh, const Eigen::Vector3i& t) {
-  const Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  return (b - a).cross(c - a).norm() < 1e-3 * kWeld * longest;
-}
-
 /// An edge that is not run through as often in one sense as in the other, if there is one.
 const std::pair<int, int>* OpenEdge(const TriangleMesh& mesh, bool with_flat,
                                     std::map<std::pair<int, int>, int>* balance) {
@@ -84,16 +79,21 @@ const std::pair<int, int>* OpenEdge(const TriangleMesh& mesh, bool with_flat,
   return nullptr;
 }
 
-void CheckClosed(const std::filesystem::path& file, const TriangleMesh& mesh) {
+/// Makes the surface closed by triangles that have an area. Throws ModelError where it is not
+/// closed.
+void DropFlat(const std::filesystem::path& file, TriangleMesh* mesh) {
   std::map<std::pair<int, int>, int> balance;
-  if (OpenEdge(mesh, false, &balance) == nullptr) return;
-  const std::pair<int, int>* open = OpenEdge(mesh, true, &balance);
-  if (open == nullptr) return;
-  const Vector3d p = 0.5 * (mesh.vertices[open->first] + mesh.vertices[open->second]);
-  throw ModelError(fmt::format(
-      "{}: mesh is not closed: the edge at ({:.4g}, {:.4g}, {:.4g}) must belong to two triangles "
-      "that face the same side",
-      file.string(), p.x(), p.y(), p.z()));
+  if (OpenEdge(*mesh, false, &balance) != nullptr) {
+    if (const std::pair<int, int>* open = OpenEdge(*mesh, true, &balance)) {
+      const Vector3d p = 0.5 * (mesh->vertices[open->first] + mesh->vertices[open->second]);
+      throw ModelError(fmt::format(
+          "{}: mesh is not closed: the edge at ({:.4g}, {:.4g}, {:.4g}) must belong to two "
+          "triangles that face the same side",
+          file.string(), p.x(), p.y(), p.z()));
+    }
+    FlipFlat(mesh);
+  }
+  std::erase_if(mesh->triangles, [&](const auto& t) { return IsFlat(*mesh, t); });
 }
 
 double VolumeOf(const std::vector<Vector3d>& vertices,
@@ -217,8 +217,7 @@ void CloseMesh(const std::filesystem::path& file, bool mirrored, TriangleMesh* m
     throw ModelError(
         fmt::format("{}: {} triangles on {} vertices; allowed are at least 4 on at most {}",
                     file.string(), mesh->triangles.size(), mesh->vertices.size(), kMaxVertices));
-  CheckClosed(file, *mesh);
-  std::erase_if(mesh->triangles, [&](const auto& t) { return IsFlat(*mesh, t); });
+  DropFlat(file, mesh);
   DropUnused(mesh);
   double volume = Volume(*mesh);
   if (mirrored && volume < 0) {

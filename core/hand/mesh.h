@@ -31,7 +31,7 @@ TriangleMesh LoadMesh(const std::filesystem::path& file, const Vector3d& scale);
 /// The same for a body: its surface must be closed (every edge is run through as often in one sense
 /// as in the other, so that several closed pieces may touch) and face outwards (its volume is
 /// positive; a mirrored mesh is turned; a piece that faces inwards is a cavity of another).
-/// Triangles without area are dropped. Throws ModelError.
+/// Triangles without area are taken out (FlipFlat). Throws ModelError.
 TriangleMesh LoadClosedMesh(const std::filesystem::path& file,
                             const Vector3d& scale = Vector3d::Ones());
 

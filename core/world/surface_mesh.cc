@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
-#include <set>
 #include <utility>
 
 #include "core/world/last_mesh.h"
@@ -79,60 +77,27 @@ class OutwardNormals {
     const int from = corners[k], to = corners[(k + 1) % 3], last = corners[(k + 2) % 3];
     at_corner_[from] +=
         normal * AngleBetween(vertices_[to] - vertices_[from], vertices_[last] - vertices_[from]);
-    Edge& edge = at_edge_.try_emplace(std::minmax(from, to)).first->second;
-    edge.sum += normal;
-    return edge.triangles++ == 0;
-  }
-
-  /// A corner may lie on the edge of another triangle, where a triangle without area was between
-  /// them: that edge and its parts have one triangle each. They are one edge.
-  void JoinAcrossGaps() {
-    std::vector<std::pair<std::pair<int, int>, Vector3d>> one_sided;  // and the triangle's normal
-    for (const auto& [ends, edge] : at_edge_)
-      if (edge.triangles == 1) one_sided.emplace_back(ends, edge.sum);
-    std::set<std::pair<int, int>> joined;  // corner and edge
-    for (const auto& [ends, normal] : one_sided) {
-      const Vector3d middle = 0.5 * (vertices_[ends.first] + vertices_[ends.second]);
-      Vector3d across = Vector3d::Zero();
-      for (std::size_t i = 0; i < one_sided.size(); ++i) {
-        const auto& [other, other_normal] = one_sided[i];
-        if (other == ends) continue;
-        if (Passes(other, middle)) across += other_normal;
-        for (const int corner : {ends.first, ends.second})
-          if (corner != other.first && corner != other.second && Passes(other, vertices_[corner]) &&
-              joined.insert({corner, static_cast<int>(i)}).second)
-            at_corner_[corner] += std::numbers::pi * other_normal;
-      }
-      at_edge_.at(ends).sum += across.normalized();
-    }
+    const auto [edge, is_new] = at_edge_.try_emplace(std::minmax(from, to), Vector3d::Zero());
+    edge->second += normal;
+    return is_new;
   }
 
   /// `normal` where what meets there cancels.
   Vector3d AtEdge(int from, int to, const Vector3d& normal) const {
-    return Direction(at_edge_.at(std::minmax(from, to)).sum, normal);
+    return Direction(at_edge_.at(std::minmax(from, to)), normal);
   }
   Vector3d AtCorner(int corner, const Vector3d& normal) const {
     return Direction(at_corner_[corner], normal);
   }
 
  private:
-  struct Edge {
-    Vector3d sum = Vector3d::Zero();  // of normals
-    int triangles = 0;
-  };
-
   static Vector3d Direction(const Vector3d& sum, const Vector3d& otherwise) {
     constexpr double kCancelled = 1e-6;
     return sum.norm() > kCancelled ? Vector3d(sum.normalized()) : otherwise;
   }
-  bool Passes(const std::pair<int, int>& ends, const Vector3d& p) const {
-    constexpr double kOnEdge = 1e-8;  // [m]
-    const Vector3d &a = vertices_[ends.first], ab = vertices_[ends.second] - a;
-    return SquaredDistanceToSegment(p, a, ab, ab.squaredNorm()) < kOnEdge * kOnEdge;
-  }
 
   const std::vector<Vector3d>& vertices_;
-  std::map<std::pair<int, int>, Edge> at_edge_;
+  std::map<std::pair<int, int>, Vector3d> at_edge_;  // sums of normals
   std::vector<Vector3d> at_corner_;
 };
 
@@ -153,7 +118,6 @@ SurfaceMesh::SurfaceMesh(const std::vector<Vector3d>& vertices_O,
     triangles_.push_back(triangle);
     corners.push_back(t);
   }
-  outward.JoinAcrossGaps();
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     Triangle& t = triangles_[i];
     for (int k = 0; k < 3; ++k) {
