@@ -17,7 +17,7 @@ namespace regrasp {
 /// contacts: any number; weight: the force of gravity on the object [N], along any direction;
 /// torque_scale: [m], > 0; max_force: cap on each normal force [N], > 0; 1e29 and more means none.
 /// Error at most 1e-4 |weight| (1e-5 on the grasps of the tests). No allocation for up to
-/// kMaxFingers contacts (any number without a cap). Deterministic; bounded work.
+/// kMaxFingers contacts. Deterministic; bounded work.
 ///
 /// Method: for each d a linear programme over all wrenches of the round cones, solved by the
 /// revised simplex method; instead of linearising a cone beforehand, the best of its infinitely

@@ -17,7 +17,7 @@ class QualityMonitor {
  public:
   static constexpr double kMarginInterval = 0.005;     ///< from one load margin to the next [s]
   static constexpr double kEpsilonInterval = 0.050;    ///< from one beginning on, at least [s]
-  static constexpr int kEpsilonFacets = 60;            ///< facets per tick (about 0.1 us each)
+  static constexpr int kEpsilonFacets = 30;            ///< facets per tick (about 0.2 us each)
   static constexpr int kEpsilonEdges = kMonitorEdges;  ///< of the friction pyramid
   static constexpr int kMaxEpsilonSteps = 10000;       ///< more are never needed
 
