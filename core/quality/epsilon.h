@@ -40,7 +40,7 @@ class EpsilonSolver {
 
   /// Starts a computation; one under way is dropped.
   void Begin(std::span<const GraspContact> contacts, double torque_scale, int edges);
-  /// Goes on until at least `max_facets` facets have been made (about 0.1 us each; a step
+  /// Goes on until at least `max_facets` facets have been made (about 0.2 us each; a step
   /// overshoots by one insertion, at most some 250 facets for 64 wrenches). True when the result is
   /// there, and from then on.
   bool Step(int max_facets);

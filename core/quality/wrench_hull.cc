@@ -12,6 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFlat = 1e-8;               // of the largest wrench: thinner sets span no volume
 constexpr std::size_t kSeamFacets = 100000;  // most new facets of one insertion
+constexpr std::size_t kSeamsPerFacet = 5;    // all its seams but that to the horizon: none too many
 
 }  // namespace
 
@@ -42,8 +43,9 @@ void WrenchHull::Reserve(std::size_t points, std::size_t facets) {
   visible_.reserve(facets);
   fresh_.reserve(facets);
   // A vertex of a simplicial hull of n points in six dimensions has at most (n - 4)(n - 5) facets.
-  const std::size_t fresh = std::min({facets, kSeamFacets, points * points});
-  seams_.resize(std::max(seams_.size(), std::bit_ceil(10 * fresh)));
+  const std::size_t n = std::max<std::size_t>(points, 7);
+  const std::size_t fresh = std::min({facets, kSeamFacets, (n - 4) * (n - 5)});
+  seams_.resize(std::max(seams_.size(), std::bit_ceil(kSeamsPerFacet * fresh)));
   facet_limit_ = std::max(facet_limit_, facets);
 }
 
@@ -216,7 +218,7 @@ bool WrenchHull::Complete() {
 }
 
 bool WrenchHull::Join(std::span<const std::int32_t> facets) {
-  const std::size_t size = std::bit_ceil(10 * facets.size());
+  const std::size_t size = std::bit_ceil(kSeamsPerFacet * facets.size());
   if (size > seams_.size()) return false;
   const std::size_t mask = size - 1;
   if (++seam_visit_ == 0) {  // wrapped: forget the marks of four thousand million insertions ago
