@@ -59,10 +59,10 @@ FingerVector ForceTorque(const HandModel& hand, const std::vector<int>& joints,
                          const FingerEstimate& finger, const FingerVector& posture,
                          const Vector3d& commanded, const Vector3d& v_ref,
                          const ControlParameters& parameters) {
-  const FingerPinv pinv = DampedPinv(finger.J, parameters.pinv_damping);
-  const FingerVector qdot_ref = pinv * v_ref;
+  const FingerVector qdot_ref = DampedPinv(finger.J, parameters.pinv_damping) * v_ref;
   const Vector3d along = finger.J * posture;
-  FingerVector tau = finger.J.transpose() * commanded + posture - pinv * along;
+  FingerVector tau = finger.J.transpose() * commanded + posture -
+                     DampedPinv(finger.J, parameters.projection_damping) * along;
   for (int k = 0; k < static_cast<int>(joints.size()); ++k)
     tau[k] += hand.joints[joints[k]].damping * qdot_ref[k];
   return tau;

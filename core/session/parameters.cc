@@ -56,6 +56,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.position_integral", "N/(m s)", 0, 3000, "Integral gain from object position error to force.", kMeasured, [](P& p) { return &p.control.position_integral; }),
   Row("control.position_stiffness", "N/m", 0, 2000, "Proportional gain from object position error to force.", kMeasured, [](P& p) { return &p.control.position_stiffness; }),
   Row("control.posture_stiffness", "N m/rad", 0, 2, "Posture spring in the null space of the contact force.", kMeasured, [](P& p) { return &p.control.posture_stiffness; }),
+  Row("control.projection_damping", "m", 1e-6, 0.1, "Damping of the projection of posture torques into the null space: what it lets through presses on the object.", kMeasured, [](P& p) { return &p.control.projection_damping; }),
   Row("control.reapproach_delay_s", "s", 0.001, 1, "A holding finger without contact for so long moves in again.", kMeasured, [](P& p) { return &p.control.reapproach_delay_s; }),
   Row("control.reapproach_force", "N", 0.01, 2, "Force with which it moves in.", kMeasured, [](P& p) { return &p.control.reapproach_force; }),
   Row("control.reapproach_speed", "m/s", 0.001, 0.2, "Speed with which it moves in.", kMeasured, [](P& p) { return &p.control.reapproach_speed; }),

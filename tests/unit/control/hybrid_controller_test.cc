@@ -111,8 +111,8 @@ TEST_F(HybridControllerTest, PostureSpringsGiveNoContactForce) {
     task.force = 0;
   }
   parameters_.posture_stiffness = 0.5;
-  for (const double lambda : {0.0, 0.004}) {
-    parameters_.pinv_damping = lambda;
+  for (const double lambda : {1e-6, 0.004}) {
+    parameters_.projection_damping = lambda;
     HybridController controller(hand_, kDt);
     controller.StartHolding(rest, gravity_, parameters_);
     const JointVector torque = controller.Update(e, tasks_, {}, gravity_, parameters_) -
@@ -136,9 +136,44 @@ TEST_F(HybridControllerTest, PostureSpringsGiveNoContactForce) {
   }
 }
 
+// The thumb at the edge of its workspace, where its Jacobian has a singular value of a few mm: what
+// it presses with is what it is asked for, however far it is from its resting posture.
+TEST_F(HybridControllerTest, ForceIsWhatIsAskedForNearASingularPosture) {
+  for (FingerTask& task : tasks_) {
+    task.mode = FingerMode::kTouch;
+    task.force = 1;
+  }
+  RandomStream random(7, 0);
+  int near_singular = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    JointVector moved(hand_.num_joints());
+    for (int j = 0; j < hand_.num_joints(); ++j) {
+      const Joint& joint = hand_.joints[static_cast<std::size_t>(j)];
+      moved[j] = joint.lower + random.Uniform() * (joint.upper - joint.lower);
+    }
+    const Estimate e = TouchingEstimate(hand_, moved);
+    HybridController controller(hand_, kDt);
+    controller.StartHolding(TouchingEstimate(hand_, q_), gravity_, parameters_);
+    const JointVector torque = controller.Update(e, tasks_, {}, gravity_, parameters_) -
+                               GravityTorque(hand_, e.kinematics, gravity_);
+    for (int i = 0; i < hand_.num_fingers(); ++i) {
+      const FingerJacobian& J = e.fingers[static_cast<std::size_t>(i)].J;
+      const Matrix3d JJt = J * J.transpose();
+      const double sigma = std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(JJt).eigenvalues()[0]);
+      if (sigma < 0.005 || sigma > 0.012) continue;
+      ++near_singular;
+      const Vector3d force = JJt.inverse() * (J * OfFinger(torque, i));
+      const Vector3d asked = -e.fingers[static_cast<std::size_t>(i)].normal_W;
+      EXPECT_LT((force - asked).norm(), 0.05)
+          << hand_.fingers[static_cast<std::size_t>(i)].name << ", sigma " << sigma;
+    }
+  }
+  EXPECT_GT(near_singular, 100);
+}
+
 TEST_F(HybridControllerTest, LimitSpringsPushBackIntoTheRange) {
   parameters_.limit_stiffness = 1;
-  parameters_.pinv_damping = 1e3;  // no projection: the springs alone
+  parameters_.projection_damping = 1e3;  // no projection: the springs alone
   for (FingerTask& task : tasks_) {
     task.mode = FingerMode::kTouch;
     task.force = 0;
