@@ -4,6 +4,9 @@
 
 #include "tests/protocol/daemon_fixture.h"
 
+// OpenCV asks GDAL when it writes a picture, and GDAL takes two locks of its own in either order.
+extern "C" const char* __tsan_default_suppressions() { return "deadlock:libgdal"; }
+
 namespace regrasp::test {
 namespace {
 
