@@ -54,7 +54,7 @@ struct GaitParameters {
   double settle_s = 0.05;             ///< after it, before the first finger leaves
   double limit_margin = 0.03;         ///< the motion ends with a joint this near to its limit [rad]
   double min_manipulability =
-      0.05;  ///< ... with a finger below this share of its first manipulability
+      0.25;  ///< ... with a finger below this share of its first manipulability
   double max_excursion =
       0.035;  ///< ... with a contact this far from its first place in the palm [m]
   double lag_position = 0.002;  ///< the reference waits while the object is this far behind [m]
