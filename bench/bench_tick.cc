@@ -8,6 +8,8 @@
 /// takes, without what the machine does in between (interrupts; the other rows' memory).
 ///
 ///   bench_tick [--seconds 10] [--seed 1] [--noise paper]      seconds of each state
+///
+/// Ends with 1 where a row lost the object.
 
 #include <algorithm>
 #include <array>
@@ -234,11 +236,13 @@ int Main(int argc, char** argv) {
       Print(exploring ? "exploring" : "holding", row, Of(row), Of(rows[1]), bare_us);
   }
   std::printf("ratio: median tick / median bare exact step of the plain hand, same state\n");
-  for (const Row& row : rows)
-    if (!row.ok()) {
-      std::printf("%s lost the object\n", row.name().c_str());
-      return 1;
-    }
+  bool lost = false;
+  for (const Row& row : rows) {
+    if (row.ok()) continue;
+    std::printf("%s lost the object\n", row.name().c_str());
+    lost = true;
+  }
+  if (lost) return 1;
   PrintQuickest(options);
   return 0;
 }

@@ -17,9 +17,11 @@ def milliseconds(action):
 
 def main():
     n = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    if n < 1:
+        sys.exit(f"checkpoints: N is {n}; allowed: at least 1")
     with regrasp.start(seed=1) as hand:
         hand.grasp().done()
-        hand.explore("ring")  # goes on while it is saved
+        hand.rotate(turns=1000)  # goes on all the while
         names = [f"bench-{k}" for k in range(n)]
         rows = {
             "version": [milliseconds(hand.version) for _ in names],
@@ -27,6 +29,7 @@ def main():
             "checkpoint.restore": [milliseconds(lambda name=name: hand.checkpoint_restore(name=name).wait())
                                    for name in names],
         }
+        print("at the end:", hand.status()["state"])
     print("[ms]                 median   p90   most")
     for name, times in rows.items():
         times.sort()

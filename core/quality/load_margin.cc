@@ -202,7 +202,8 @@ class ConeSimplex {
     return best.value;
   }
 
-  /// The basic variable of x that reaches zero first as `column` enters; -1 where none does.
+  /// The basic variable of x, all >= 0, that reaches zero first as `column` enters; -1 where none
+  /// does.
   static int RatioTest(const Column& x, const Column& column) {
     // As products and not as choices; where the variable does not fall the ratio is infinite or
     // NaN, never the least.

@@ -12,7 +12,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFlat = 1e-8;               // of the largest wrench: thinner sets span no volume
 constexpr std::size_t kSeamFacets = 100000;  // most new facets of one insertion
-constexpr std::size_t kSeamsPerFacet = 5;    // all its seams but that to the horizon: none too many
+// Facets have five seams each, and five times a number is no power of two: a place stays free.
+constexpr std::size_t kSeamsPerFacet = 5;
 
 }  // namespace
 

@@ -36,7 +36,7 @@ class WrenchHull {
  public:
   /// Makes room for hulls of this many points and at most `facets` facets at a time: Start() and
   /// Insert() never allocate within it, and Insert() fails beyond it. Allocates what is missing;
-  /// about 400 bytes a facet.
+  /// about 300 bytes a facet.
   void Reserve(std::size_t points, std::size_t facets);
 
   /// Starts from a large simplex of seven of the points (a view of which is kept until the next

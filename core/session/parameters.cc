@@ -48,7 +48,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.max_normal_force", "N", 0.5, 30, "Upper bound of a finger's normal force.", kMeasured, [](P& p) { return &p.control.max_normal_force; }),
   Row("control.min_normal_force", "N", 0, 2, "Lower bound of a holding finger's normal force.", kMeasured, [](P& p) { return &p.control.min_normal_force; }),
   Row("control.normal_force_integral", "1/s", 0, 50, "Integral gain of a sliding finger's normal force.", kOurs, [](P& p) { return &p.control.normal_force_integral; }),
-  Row("control.pinv_damping", "m", 0, 0.1, "Damping of the pseudo-inverse of the finger Jacobian.", kMeasured, [](P& p) { return &p.control.pinv_damping; }),
+  Row("control.pinv_damping", "m", 0, 0.1, "Damping of the pseudo-inverse of the finger Jacobian, for velocities.", kMeasured, [](P& p) { return &p.control.pinv_damping; }),
   Row("control.pose_filter_s", "s", 0, 1, "Time constant of the low pass on the object pose.", kMeasured, [](P& p) { return &p.control.pose_filter_s; }),
   Row("control.slow_pose_filter_s", "s", 0, 10, "Time constant with which a pose that comes at a rate of its own corrects the one the fingers that hold tell.", kMeasured, [](P& p) { return &p.control.slow_pose_filter_s; }),
   Row("control.slow_pose_velocity_s", "s", 0, 10, "Time constant of the object's velocity by which such a pose, late as it is, is advanced.", kMeasured, [](P& p) { return &p.control.slow_pose_velocity_s; }),

@@ -136,9 +136,9 @@ TEST_F(HybridControllerTest, PostureSpringsGiveNoContactForce) {
   }
 }
 
-// The thumb at the edge of its workspace, where its Jacobian has a singular value of a few mm: with
-// an undamped projection what it presses with is what it is asked for, however far it is from its
-// resting posture.
+// Fingers where the Jacobian has a singular value of a few mm, as the thumb at the edge of its
+// workspace: with a projection next to undamped what they press with is what they are asked for,
+// however far they are from their resting posture.
 TEST_F(HybridControllerTest, UndampedForceIsWhatIsAskedForNearASingularPosture) {
   parameters_.projection_damping = 1e-4;
   for (FingerTask& task : tasks_) {
@@ -146,7 +146,7 @@ TEST_F(HybridControllerTest, UndampedForceIsWhatIsAskedForNearASingularPosture) 
     task.force = 1;
   }
   RandomStream random(7, 0);
-  int near_singular = 0;
+  int near_singular = 0, of_thumb = 0;
   for (int trial = 0; trial < 2000; ++trial) {
     JointVector moved(hand_.num_joints());
     for (int j = 0; j < hand_.num_joints(); ++j) {
@@ -164,6 +164,7 @@ TEST_F(HybridControllerTest, UndampedForceIsWhatIsAskedForNearASingularPosture) 
       const double sigma = std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix3d>(JJt).eigenvalues()[0]);
       if (sigma < 0.005 || sigma > 0.012) continue;
       ++near_singular;
+      of_thumb += i == hand_.num_fingers() - 1;
       const Vector3d force = JJt.inverse() * (J * OfFinger(torque, i));
       const Vector3d asked = -e.fingers[static_cast<std::size_t>(i)].normal_W;
       EXPECT_LT((force - asked).norm(), 0.05)
@@ -171,6 +172,7 @@ TEST_F(HybridControllerTest, UndampedForceIsWhatIsAskedForNearASingularPosture) 
     }
   }
   EXPECT_GT(near_singular, 100);
+  EXPECT_GT(of_thumb, 10);
 }
 
 TEST_F(HybridControllerTest, LimitSpringsPushBackIntoTheRange) {
