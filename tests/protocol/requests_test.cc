@@ -4,7 +4,8 @@
 
 #include "tests/protocol/daemon_fixture.h"
 
-// OpenCV asks GDAL when it writes a picture, and GDAL takes two locks of its own in either order.
+// OpenCV asks GDAL when it writes a picture; GDAL takes two locks of its own in either order, by
+// one thread.
 extern "C" const char* __tsan_default_suppressions() { return "deadlock:libgdal"; }
 
 namespace regrasp::test {
