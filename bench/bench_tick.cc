@@ -90,10 +90,10 @@ class Row {
     Give(CommandType::kGrasp);
   }
 
-  /// True once holding; the grasp is not measured.
-  bool GraspTick() {
-    Step(nullptr);
-    return session_->state() == SessionState::kHolding;
+  /// The grasp is not measured.
+  void Grasp() {
+    for (int tick = 0; tick < 20000 && session_->state() != SessionState::kHolding; ++tick)
+      Step(nullptr);
   }
   void HoldTick() { Step(&holding_); }
   void ExploreTick() {
@@ -176,8 +176,7 @@ void PrintQuickest(const Options& options) {
   const int ticks = static_cast<int>(options.seconds * 1000);
   for (int k = 0; k < kRepeats; ++k) {
     Row row("fast", options, Stepper::kFast, true);
-    for (int tick = 0; tick < 20000 && !row.GraspTick(); ++tick) {
-    }
+    row.Grasp();
     for (int i = 0; i < ticks; ++i) row.HoldTick();
     for (int i = 0; i < ticks; ++i) row.ExploreTick();
     quickest[0].Lower(row.holding().total);
@@ -211,11 +210,7 @@ int Main(int argc, char** argv) {
   rows.emplace_back("fast", options, Stepper::kFast, true);
   rows.emplace_back("exact", options, Stepper::kExact, true);
   rows.emplace_back("exact, 22 hinges", options, Stepper::kExact, false);
-  for (Row& row : rows) {
-    int ticks = 0;
-    while (!row.GraspTick() && ++ticks < 20000) {
-    }
-  }
+  for (Row& row : rows) row.Grasp();
   const int blocks = static_cast<int>(options.seconds * 1000) / kBlock;
   for (int exploring = 0; exploring < 2; ++exploring)
     for (int b = 0; b < blocks; ++b)

@@ -28,6 +28,8 @@ int CornerBeside(const Eigen::Vector3i& t, int a, int b) {
   return -1;
 }
 
+/// Joins each flat triangle with what lies across its longest edge and cuts the two the other way
+/// (an edge flip), until none is flat or none can be joined. The surface stays where it is.
 class Flipper {
  public:
   explicit Flipper(TriangleMesh* mesh) : mesh_(*mesh) {
