@@ -2,10 +2,11 @@
 //   zoo [--hand NAME|FILE] [--objects A,B,... | zoo] [--seeds N] [--first S] [--turns T]
 //       [--axis X,Y,Z] [--tilt DEG] [--noise PRESET] [--push N] [--limit SECONDS] [--jobs N]
 //       [--rows] [--events]
-//       [--setting 'NAME: PARAMETER=VALUE ... stepper=fast|exact|round'] ...
+//       [--setting 'NAME: PARAMETER=VALUE ... noise.LEVEL=VALUE ... stepper=fast|exact|round'] ...
 // `zoo` (the default): every object of models/objects whose name begins with zoo_, and the cubes.
 // A trial is completed when its job is done and the object has truly turned by the angle asked for,
-// within 5 degrees. VALUE as `regrasp param set` takes it: exploring, true, 0.25.
+// within 5 degrees. VALUE as `regrasp param set` takes it: exploring, true, 0.25. LEVEL: a field of
+// NoiseLevels, on top of the preset: noise.position_bias_m=0.002.
 // Per setting: full turns, drops, what else failed, deg/min of the completed; per pair of settings:
 // trials that only one of them completed, and the exact two-sided McNemar p. Trials run in --jobs
 // processes, two by default; each is reproducible alone from its object, seed and setting.
@@ -37,7 +38,21 @@ namespace {
 struct Setting {
   std::string name;
   std::vector<ParameterSetting> values;
+  std::vector<std::pair<std::string, double>> noise;  // levels that are not the preset's
   Stepper stepper = Stepper::kFast;
+};
+
+/// Sets the level with one name.
+struct SetLevel {
+  std::string_view name;
+  double value;
+  bool found = false;
+  template <typename T>
+  void operator()(const char* field, T& level) {
+    if (name != field) return;
+    level = static_cast<T>(value);
+    found = true;
+  }
 };
 
 struct Options {
@@ -63,14 +78,22 @@ struct Trial {
 
 Setting ParseSetting(const std::string& text) {
   const auto colon = text.find(':');
-  Setting setting{text.substr(0, colon), {}};
+  Setting setting{text.substr(0, colon), {}, {}};
   std::istringstream words(colon == std::string::npos ? "" : text.substr(colon + 1));
   for (std::string word; words >> word;) {
+    const auto equals = word.find('=');
+    if (word.starts_with("noise.") && equals != std::string::npos) {
+      setting.noise.emplace_back(word.substr(6, equals - 6), std::stod(word.substr(equals + 1)));
+      SetLevel level{setting.noise.back().first, 0};
+      NoiseLevels().Fields(level);
+      if (!level.found) throw std::invalid_argument("zoo: " + word + ": no level of the noise");
+      continue;
+    }
     if (!word.starts_with("stepper=")) {
       setting.values.push_back(ReadSetting(word));
       continue;
     }
-    const auto stepper = StepperNamed(word.substr(word.find('=') + 1));
+    const auto stepper = StepperNamed(word.substr(equals + 1));
     if (!stepper) throw std::invalid_argument("zoo: " + word + ": fast, exact or round");
     setting.stepper = *stepper;
   }
@@ -83,6 +106,10 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
   config.model = LoadScenario(o.hand, object, ModelSearchPath());
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
+  for (const auto& [name, value] : setting.noise) {
+    SetLevel level{name, value};
+    config.noise.Fields(level);
+  }
   config.seed = seed;
   config.world.stepper = setting.stepper;
   if (o.tilt >= 0) {
@@ -292,7 +319,7 @@ Options Parse(int argc, char** argv) {
     else
       throw std::invalid_argument("zoo: " + a + " " + value + " is not an option");
   }
-  if (o.settings.empty()) o.settings.push_back({"default", {}});
+  if (o.settings.empty()) o.settings.push_back({"default", {}, {}});
   if (objects == "zoo") {
     for (const std::string& name : ListObjects(ModelSearchPath()))
       if (name.starts_with("zoo_") || name.starts_with("cube_")) o.objects.push_back(name);

@@ -25,6 +25,7 @@ struct ExplorationParameters {
   double limit_margin = 0.04;      ///< a joint this near to its limit is a wall [rad]
   double least_facing =
       -0.05;  ///< link axis . outward normal: above it the contact nears the side of the tip
+  double onto_tip_s = 3.0;  ///< so long at most to slide from the side of a link onto its round tip
   double clearance = 0.002;                   ///< a link of another finger this near is a wall [m]
   double wall_return = 5.0;                   ///< speed back from behind a wall, per depth [1/s]
   double dither_speed = 0.008;                ///< least_squares: circular dither [m/s]

@@ -15,17 +15,16 @@ constexpr double kSameWall = 0.7;  // cosine between two walls that are taken fo
 
 }  // namespace
 
-Vector3d SurfaceExploration::FreeGradient(const Input& input,
-                                          const ExplorationParameters& parameters) const {
-  Vector3d gradient = TangentPart(gradient_W_, input.normal_W);
+Vector3d SurfaceExploration::Free(const Vector3d& vector_W, const Input& input,
+                                  const ExplorationParameters& parameters) const {
+  Vector3d free = TangentPart(vector_W, input.normal_W);
   const Vector3d excursion = TangentPart(input.p_WC - p_WC_start_, input.normal_W);
   const double distance = excursion.norm();
   if (distance > parameters.max_excursion)
-    gradient -= std::max(0.0, gradient.dot(excursion) / distance) * excursion / distance;
+    free -= std::max(0.0, free.dot(excursion) / distance) * excursion / distance;
   for (const Wall& wall : input.walls)
-    if (Depth(wall) >= 0)
-      gradient -= std::max(0.0, gradient.dot(wall.direction_W)) * wall.direction_W;
-  return gradient;
+    if (Depth(wall) >= 0) free -= std::max(0.0, free.dot(wall.direction_W)) * wall.direction_W;
+  return free;
 }
 
 double SurfaceExploration::Depth(const Wall& wall) const {
@@ -52,10 +51,24 @@ void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uin
   gradient_norm_ = std::hypot(gx, gy);
 }
 
+bool SurfaceExploration::LeaveBlind(const Input& input, const ExplorationParameters& parameters) {
+  const auto* const wall = std::ranges::find_if(input.walls, &Wall::blind);
+  blind_cycles_ = wall == input.walls.end() ? 0 : blind_cycles_ + 1;
+  if (blind_cycles_ == 0) return false;
+  const double speed = std::min(
+      std::max(parameters.wall_return * wall->depth, parameters.speed_min), parameters.speed_max);
+  velocity_W_ = Free(-speed * wall->direction_W, input, parameters);
+  p_WC_prev_ = input.p_WC;
+  phi_prev_ = input.phi;
+  return true;
+}
+
 SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
                                                       const ExplorationParameters& parameters,
                                                       double dt) {
   if (++cycle_ > max_cycles_) return Status::kMaxCycles;  // line 3
+  if (parameters.onto_tip_s > 0 && LeaveBlind(input, parameters))
+    return blind_cycles_ * dt < parameters.onto_tip_s ? Status::kRunning : Status::kConverged;
   const Matrix3d R_WC = RotationFromZ(input.normal_W);
   const int n = std::max(1, parameters.update_cycles);
   const bool least_squares = estimator_ == Estimator::kLeastSquares;
@@ -74,12 +87,12 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
     p_WC_prev_ = input.p_WC;                                        // line 9
     phi_prev_ = input.phi;
     ++updates_;
-    gradient_norm_ = FreeGradient(input, parameters).norm();
+    gradient_norm_ = Free(gradient_W_, input, parameters).norm();
     small_updates_ = gradient_norm_ <= parameters.epsilon ? small_updates_ + 1 : 0;
     if (small_updates_ >= parameters.converged_updates) return Status::kConverged;
   }
 
-  const Vector3d tangent = FreeGradient(input, parameters);
+  const Vector3d tangent = Free(gradient_W_, input, parameters);
   const double norm = tangent.norm();
   velocity_W_.setZero();
   if (norm > 1e-9) {  // line 11

@@ -26,6 +26,9 @@
 ///    another finger (walls) the part of the gradient that points on is removed, from the motion
 ///    and from the test: a constrained maximum counts as converged.
 ///    Where the finger starts beyond a wall that it may stay at, the wall stands where it started.
+///  - line 4: behind a blind wall no gradient is felt, and the finger leaves it whatever phi does;
+///  where
+///    that takes longer than `onto_tip_s` the search ends.
 ///  - line 11: the displacement is per second, limited to [speed_min, speed_max].
 /// The class knows nothing of the hand: it turns contact points and values of phi into velocities.
 
@@ -43,12 +46,14 @@ struct Wall {
   Vector3d direction_W = Vector3d::Zero();  ///< unit tangent, into the wall
   double depth = 0;                         ///< how far the contact is beyond it, >= 0 [m]
   bool must_leave =
-      false;  ///< a finger that starts beyond it is pushed out, else it may stay there
+      false;           ///< a finger that starts beyond it is pushed out, else it may stay there
+  bool blind = false;  ///< beyond it the contact does not follow the finger: no gradient is felt
   template <typename V>
   void Fields(V& v) {
     v("direction_W", direction_W);
     v("depth", depth);
     v("must_leave", must_leave);
+    v("blind", blind);
   }
 };
 
@@ -94,6 +99,7 @@ class SurfaceExploration {
     v("max_cycles", max_cycles_);
     v("updates", updates_);
     v("small_updates", small_updates_);
+    v("blind_cycles", blind_cycles_);
     v("p_WC_start", p_WC_start_);
     v("p_WC_prev", p_WC_prev_);
     v("walls_start", walls_start_);
@@ -104,8 +110,11 @@ class SurfaceExploration {
   }
 
  private:
-  /// The part of the gradient along which the finger may move, in W [1/m].
-  Vector3d FreeGradient(const Input& input, const ExplorationParameters& parameters) const;
+  /// The part of a gradient or velocity along which the finger may move.
+  Vector3d Free(const Vector3d& vector_W, const Input& input,
+                const ExplorationParameters& parameters) const;
+  /// Moves out from behind a blind wall; false where there is none.
+  bool LeaveBlind(const Input& input, const ExplorationParameters& parameters);
   /// How far the finger is beyond a wall, or beyond where it started if that was beyond the wall
   /// too; below 0 the wall is not reached [m].
   double Depth(const Wall& wall) const;
@@ -117,6 +126,7 @@ class SurfaceExploration {
   int max_cycles_ = 0;
   int updates_ = 0;
   int small_updates_ = 0;  // consecutive, with the gradient below epsilon
+  int blind_cycles_ = 0;   // in a row behind a blind wall
   Vector3d p_WC_start_ = Vector3d::Zero(), p_WC_prev_ = Vector3d::Zero();
   Walls walls_start_;
   double phi_prev_ = 0;

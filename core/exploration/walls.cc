@@ -15,7 +15,8 @@ struct Capsule {
 
 constexpr double kTouching = 1e-6;   // m: nearer axes have no direction between them
 constexpr double kLeastShare = 0.2;  // of a direction that is tangential: less is no wall
-constexpr double kLeastRate = 0.2;   // links that near each other more slowly are no wall
+constexpr double kLeastRate = 0.2;   // what nears, or moves up a side, more slowly is no wall
+constexpr double kOnSide = 5e-4;     // m: farther up a contact is on the side of the link
 
 bool CapsuleOf(const HandModel& hand, const Estimate& estimate, int link, Capsule* capsule) {
   for (const Shape& shape : hand.links[link].shapes) {
@@ -56,12 +57,15 @@ Closest BetweenSegments(const Capsule& one, const Capsule& two) {
   return {one.a + s * d1, two.a + t * d2};
 }
 
-/// `direction`: of contact motion, any length; `depth` [m] along it.
+/// `direction`: of contact motion, any length; `depth` [m] along it; `wall`: what else it is.
 void AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
-             bool must_leave = false) {
+             Wall wall = {}) {
   const Vector3d tangent = TangentPart(direction, normal);
   const double share = tangent.norm() / direction.norm();
-  if (share > kLeastShare) walls->push_back({tangent.normalized(), depth / share, must_leave});
+  if (!(share > kLeastShare)) return;
+  wall.direction_W = tangent.normalized();
+  wall.depth = depth / share;
+  walls->push_back(wall);
 }
 
 /// One finger among the others.
@@ -94,25 +98,48 @@ void AddJointLimits(const Explorer& e, Walls* walls) {
   }
 }
 
-/// The contact must stay on the round end: on the side of the link it no longer follows the tip.
-/// facing = d . n is negative there (d: along the link, n: outward normal); its rate of change with
-/// the contact velocity v is (w x d) . n + d . v / (R + r), with w the link's angular velocity.
+/// On the side of the link the contact does not follow the tip: a link that slides along itself
+/// only changes `up`, how far from the tip's centre it touches. With the object at rest up = (p_F -
+/// p_O) . d; its rate with the contact velocity v is v_F . d + (p_F - p_O) . (w x d).
+void AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up, Walls* walls) {
+  const Vector3d& n = e.finger.normal_W;
+  const Vector3d arm = own.b - (e.finger.p_WC - e.estimate.object_scale * n);
+  const KinematicsData& links = e.estimate.kinematics;
+  const int tip = e.model.tip_link;
+  Vector3d rate = Vector3d::Zero();
+  for (std::size_t k = 0; k < e.model.joints.size(); ++k) {
+    const int joint = e.model.joints[k];
+    rate += (PointRate(e.hand, links, joint, tip, own.b).dot(d) +
+             AngularRate(e.hand, links, joint, tip).cross(d).dot(arm)) *
+            e.JointRate(k);
+  }
+  if (rate.norm() > kLeastRate)
+    AddWall(rate, up / rate.norm(), n, walls, {.must_leave = true, .blind = true});
+}
+
+/// The contact must stay on the round end. facing = d . n is negative there (d: along the link, n:
+/// outward normal); its rate of change with the contact velocity v is (w x d) . n + d . v / (R +
+/// r), with w the link's angular velocity.
 void AddTipSide(const Explorer& e, Walls* walls) {
   Capsule own;
   if (!CapsuleOf(e.hand, e.estimate, e.model.tip_link, &own) || (own.b - own.a).norm() <= 1e-6)
     return;
   const Vector3d d = (own.b - own.a).normalized();
   const Vector3d& n = e.finger.normal_W;
-  const double facing = d.dot(n);
+  const double facing = d.dot(n), up = (own.b - e.finger.p_WC).dot(d);
   if (facing <= e.parameters.least_facing) return;
+  if (up > kOnSide) {
+    AddSide(e, own, d, up, walls);
+    return;
+  }
   Vector3d rate = d / (e.estimate.object_scale + own.radius);
   for (std::size_t k = 0; k < e.model.joints.size(); ++k)
     rate += AngularRate(e.hand, e.estimate.kinematics, e.model.joints[k], e.model.tip_link)
                 .cross(d)
                 .dot(n) *
             e.JointRate(k);
-  constexpr bool kMustLeave = true;  // the finger would roll off over the side of its link
-  AddWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, walls, kMustLeave);
+  // The finger would roll off over the side of its link.
+  AddWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, walls, {.must_leave = true});
 }
 
 /// Between a link of this finger and another finger's.

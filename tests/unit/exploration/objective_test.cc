@@ -197,5 +197,48 @@ TEST_F(WallsTest, AWallsDepthGrowsByTheWayIntoIt) {
   EXPECT_GT(seen, 5);
 }
 
+// On the side of the link the wall is blind, and its depth is the way back onto the round end:
+// against finite differences of the posture, of a finger whose link lies on the object.
+TEST_F(WallsTest, TheSideOfTheLinkIsABlindWallWithTheRoundTipBehindIt) {
+  ExplorationParameters parameters;
+  parameters.limit_margin = parameters.clearance = -1;  // joint limits and other fingers apart
+  constexpr double kUp = 4e-3, kStep = 1e-5;            // m
+  int seen = 0;
+  for (int finger = 0; finger < hand_.num_fingers(); ++finger) {
+    const Finger& model = hand_.fingers[static_cast<std::size_t>(finger)];
+    const Shape& shape = hand_.links[static_cast<std::size_t>(model.tip_link)].shapes[0];
+    ASSERT_EQ(shape.kind, Shape::Kind::kCapsule);
+    Estimate e = estimate_;
+    FingerEstimate& f = e.fingers[static_cast<std::size_t>(finger)];
+    const auto End = [&] { return e.kinematics.X_WL[model.tip_link] * shape.b_L; };
+    const auto Along = [&] {
+      return (e.kinematics.X_WL[model.tip_link].linear() * (shape.b_L - shape.a_L)).normalized();
+    };
+    f.normal_W = TangentPart(f.normal_W, Along()).normalized();
+    f.p_WC = End() - kUp * Along() - shape.radius * f.normal_W;
+    f.J = PointJacobian(hand_, e.kinematics, finger, f.p_WC);
+    const Vector3d p_WO = f.p_WC - e.object_scale * f.normal_W;
+    const auto Up = [&] { return (End() - p_WO).dot(Along()); };
+    ASSERT_NEAR(Up(), kUp, 1e-9);
+    Walls walls;
+    FindWalls(hand_, e, finger, parameters, &walls);
+    if (walls.empty()) continue;  // it cannot move along its link
+    ASSERT_EQ(walls.size(), 1u);
+    EXPECT_TRUE(walls[0].blind && walls[0].must_leave);
+    const FingerVector dq =
+        f.J.completeOrthogonalDecomposition().solve(-kStep * walls[0].direction_W);
+    for (std::size_t k = 0; k < model.joints.size(); ++k)
+      e.q[model.joints[k]] += dq[static_cast<Eigen::Index>(k)];
+    ForwardKinematics(hand_, e.q, &e.kinematics);
+    EXPECT_NEAR((kUp - Up()) / kUp, kStep / walls[0].depth, 0.05 * kStep / walls[0].depth)
+        << finger;
+    ++seen;
+    f.p_WC += (kUp - 3e-4) * Along();  // as good as on the round end
+    FindWalls(hand_, e, finger, parameters, &walls);
+    for (const Wall& wall : walls) EXPECT_FALSE(wall.blind);
+  }
+  EXPECT_GE(seen, 3);
+}
+
 }  // namespace
 }  // namespace regrasp

@@ -85,5 +85,69 @@ TEST(SurfaceExploration, TwoOpposedWallsLeaveTheFingerBetween) {
   EXPECT_NEAR(algorithm.gradient_norm(), 0, 1e-9);  // nowhere to go
 }
 
+// Behind a blind wall phi tells nothing; here it even leads further in.
+TEST(SurfaceExploration, ABlindWallIsLeftFirstWhateverPhiDoes) {
+  ExplorationParameters parameters = SlowClimb();
+  parameters.speed_min = 0.004;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    RandomStream random(seed, 7);
+    Follower finger{StartAt(6e-3, &random)};
+    const Vector3d start = finger.p, out = (Top() - start).normalized();
+    constexpr double kWay = 2e-3;
+    const auto Depth = [&] { return kWay - out.dot(finger.p - start); };
+    SurfaceExploration algorithm;
+    int blind = 0;
+    const auto Sense = [&] {
+      SurfaceExploration::Input input = finger.Sense();
+      if (Depth() <= 0) return input;
+      ++blind;
+      input.phi = 10 - 1000 * out.dot(finger.p - start);
+      const Vector3d into = TangentPart(-out, input.normal_W);
+      input.walls.push_back({into.normalized(), Depth() / into.norm(), true, true});
+      return input;
+    };
+    algorithm.Start(Sense(), Estimator::kLeastSquares, seed, 0, parameters);
+    Status status = Status::kRunning;
+    while (status == Status::kRunning) {
+      const SurfaceExploration::Input input = Sense();
+      status = algorithm.Update(input, parameters, kDt);
+      if (!input.walls.empty()) {
+        const double speed = -algorithm.velocity_W().dot(input.walls[0].direction_W);
+        EXPECT_GE(speed, parameters.speed_min) << "seed " << seed;
+        EXPECT_LE(speed, parameters.speed_max) << "seed " << seed;
+      }
+      finger.Move(algorithm.velocity_W());
+    }
+    EXPECT_EQ(status, Status::kConverged) << "seed " << seed;
+    EXPECT_LT(blind, 2 * kWay / parameters.speed_min / kDt) << "seed " << seed;
+    EXPECT_GT(Phi(finger.p), Phi(start + kWay * out)) << "seed " << seed;
+  }
+}
+
+// Where something stands in the way out the search ends once the time is up; with none it goes on.
+TEST(SurfaceExploration, LeavingABlindWallTakesItsTimeAndNoMore) {
+  ExplorationParameters parameters = SlowClimb();
+  for (const double allowed_s : {0.0, 0.5}) {
+    parameters.onto_tip_s = allowed_s;
+    RandomStream random(6, 0);
+    Follower finger{StartAt(6e-3, &random)};
+    const Vector3d start = finger.p;
+    SurfaceExploration algorithm;
+    const Status status = Explore(&algorithm, &finger, Estimator::kLeastSquares, 1, 2000,
+                                  parameters, [](SurfaceExploration::Input* input) {
+                                    const Vector3d x = RotationFromZ(input->normal_W).col(0);
+                                    input->walls.push_back({x, 1e-3, true, true});
+                                    input->walls.push_back({-x, 0});
+                                  });
+    if (allowed_s == 0) {
+      EXPECT_GT((finger.p - start).norm(), 1e-4);
+      continue;
+    }
+    EXPECT_EQ(status, Status::kConverged);
+    EXPECT_NEAR(algorithm.cycle() * kDt, allowed_s, 2 * kDt);
+    EXPECT_LT((finger.p - start).norm(), 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace regrasp
