@@ -1,13 +1,13 @@
 #pragma once
 
-/// What is wrong with a file, gathered so that its reader hears of everything at once; and what is
-/// only worth telling.
+/// What is wrong with a file of a model, gathered so that its reader hears of everything at once;
+/// and what is only worth telling.
 
 #include <fmt/format.h>
 
 #include <string>
-#include <vector>
 
+#include "core/files/problem_list.h"
 #include "core/hand/model_error.h"
 
 namespace regrasp {
@@ -26,25 +26,21 @@ class Problems {
     AddText(line, fmt::format(format, std::forward<Args>(args)...));
   }
   void AddText(int line, const std::string& message);
-  /// A message that names its file itself.
-  void AddWhole(const std::string& message) { Keep(message); }
+  /// What another file was refused for; its messages name their file themselves.
+  void Add(const ModelError& error);
   /// A ModelWarning, which refuses nothing.
   void Warn(int line, std::string element, std::string text);
 
   const std::string& file() const { return file_; }
-  bool empty() const { return count_ == 0; }
-  std::size_t count() const { return count_; }
-  /// Throws a ModelError that holds every message, one a line, where there is any; as it may be
-  /// shown to people (ShownText).
+  bool empty() const { return list_.empty(); }
+  std::size_t count() const { return list_.count(); }
+  /// Throws a ModelError with every problem, where there is any.
   void ThrowIfAny() const;
 
  private:
-  void Keep(const std::string& message);
-
   std::string file_;
   ModelReport* report_;
-  std::vector<std::string> messages_;
-  std::size_t count_ = 0;
+  ProblemList list_;
 };
 
 }  // namespace regrasp

@@ -8,6 +8,7 @@
 #include "core/files/names.h"
 #include "core/hand/toml_file.h"
 #include "core/hand/urdf.h"
+#include "core/hand/urdf_file.h"
 
 namespace regrasp {
 namespace {
@@ -61,32 +62,46 @@ void ReadCoupling(const TomlFile& file, const std::string& joint, const toml::no
     coupling.offset = file.Number(*offset, "offset_deg", -360, 360) * kDegree;
 }
 
-HandLayout ReadLayout(const TomlFile& file) {
-  HandLayout layout;
+/// What a hand can be built with, whatever is wrong with it.
+void ReadNumbers(const TomlFile& file, HandLayout* layout) {
   const toml::table& root = file.root();
-  layout.armature = file.Number(root, "armature_kg_m2", 0, 0.1);
+  layout->armature = file.Number(root, "armature_kg_m2", 0, 0.1);
   if (const toml::node* damping = root.get("damping_nm_s_rad"))
-    layout.damping = file.Number(*damping, "damping_nm_s_rad", 0, 10);
+    layout->damping = file.Number(*damping, "damping_nm_s_rad", 0, 10);
   if (const toml::node* least = root.get("least_damping_nm_s_rad"))
-    layout.least_damping = file.Number(*least, "least_damping_nm_s_rad", 0, 10);
-  ReadFingers(file, &layout);
-  if (root.contains("palm")) {
-    const toml::table& palm = file.Table(root, "palm");
-    file.CheckKeys(palm, {"rotation_deg", "position_m"});
-    if (palm.contains("rotation_deg"))
-      layout.X_HR.linear() =
-          FromRotationVector(file.Vector(palm, "rotation_deg", 360) * kDegree).toRotationMatrix();
-    if (palm.contains("position_m"))
-      layout.X_HR.translation() = file.Vector(palm, "position_m", 10);
-  }
+    layout->least_damping = file.Number(*least, "least_damping_nm_s_rad", 0, 10);
+  if (!root.contains("palm")) return;
+  const toml::table& palm = file.Table(root, "palm");
+  file.CheckKeys(palm, {"rotation_deg", "position_m"});
+  if (palm.contains("rotation_deg"))
+    layout->X_HR.linear() =
+        FromRotationVector(file.Vector(palm, "rotation_deg", 360) * kDegree).toRotationMatrix();
+  if (palm.contains("position_m")) layout->X_HR.translation() = file.Vector(palm, "position_m", 10);
+}
+
+/// Fingers, and which joints move. False where something is wrong: no hand can be built then.
+bool ReadJoints(const TomlFile& file, HandLayout* layout) {
+  const std::size_t before = file.count();
+  const toml::table& root = file.root();
+  ReadFingers(file, layout);
   if (root.contains("locked_deg"))
     for (const auto& [joint, angle] : file.Table(root, "locked_deg"))
-      layout.locked[std::string(joint.str())] =
+      layout->locked[std::string(joint.str())] =
           file.Number(angle, "locked_deg." + std::string(joint.str()), -360, 360) * kDegree;
   if (root.contains("coupled"))
     for (const auto& [joint, node] : file.Table(root, "coupled"))
-      ReadCoupling(file, std::string(joint.str()), node, &layout);
-  return layout;
+      ReadCoupling(file, std::string(joint.str()), node, layout);
+  return file.count() == before;
+}
+
+/// An angle within the limits of a joint [rad].
+double ReadAngle(const TomlFile& file, const toml::node& node, const char* key,
+                 const std::string& joint, double lower, double upper) {
+  // An angle rounded to 0.01 deg must not be refused where it stands on a limit.
+  constexpr double kSlack = 0.005 + 1e-9;
+  const double degrees = file.Number(node, fmt::format("{}.{} [deg]", key, joint),
+                                     lower / kDegree - kSlack, upper / kDegree + kSlack);
+  return std::clamp(degrees * kDegree, lower, upper);
 }
 
 /// One angle per driven joint, by joint name.
@@ -99,17 +114,41 @@ JointVector ReadPosture(const TomlFile& file, const char* key, const HandModel& 
   JointVector q(hand.num_joints());
   for (int j = 0; j < hand.num_joints(); ++j) {
     const Joint& joint = hand.joints[static_cast<std::size_t>(j)];
-    q[j] = joint.lower;
     const toml::node* node = file.Require(table, joint.name.c_str());
-    if (node == nullptr) continue;
-    // An angle rounded to 0.01 deg must not be refused where it stands on a limit.
-    constexpr double kSlack = 0.005 + 1e-9;
-    const double degrees =
-        file.Number(*node, fmt::format("{}.{} [deg]", key, joint.name),
-                    joint.lower / kDegree - kSlack, joint.upper / kDegree + kSlack);
-    q[j] = std::clamp(degrees * kDegree, joint.lower, joint.upper);
+    q[j] = node == nullptr ? joint.lower
+                           : ReadAngle(file, *node, key, joint.name, joint.lower, joint.upper);
   }
   return q;
+}
+
+/// The same where no hand could be built: as far as its URDF tells.
+void CheckPosture(const TomlFile& file, const char* key, const UrdfFile& urdf) {
+  const toml::table& table = file.Table(file.root(), key);
+  std::vector<std::string> names;
+  for (const UrdfJoint& joint : urdf.joints) {
+    names.push_back(joint.name);
+    const toml::node* node = table.get(joint.name);
+    if (node == nullptr) continue;
+    const bool limited = joint.type == UrdfJoint::Type::kRevolute && joint.lower < joint.upper;
+    ReadAngle(file, *node, key, joint.name, limited ? joint.lower : -2 * M_PI,
+              limited ? joint.upper : 2 * M_PI);
+  }
+  file.CheckKeys(table, names);
+}
+
+/// Throws the problems of a scenario with those of its hand. `refused`: why the hand could not be
+/// built; null where that follows from the scenario.
+void RefuseWithoutHand(const TomlFile& file, const fs::path& urdf_file, const ModelError* refused) {
+  if (refused) file.Add(*refused);
+  try {
+    Problems problems(urdf_file.string());
+    const UrdfFile urdf = ReadUrdf(urdf_file, &problems);
+    problems.ThrowIfAny();
+    for (const char* key : {"q_preshape_deg", "q_closed_deg"}) CheckPosture(file, key, urdf);
+  } catch (const ModelError& error) {
+    if (!refused) file.Add(error);
+  }
+  file.ThrowIfAny();
 }
 
 fs::path Beside(fs::path urdf_file) { return urdf_file.replace_extension(".toml"); }
@@ -178,10 +217,14 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   LoadOptions of_hand = options;
   of_hand.inertia_from_shape |= file.Flag(root, "inertia_from_shape");
   of_hand.fill_missing_meshes |= file.Flag(root, "fill_missing_meshes");
-  const HandLayout layout = ReadLayout(file);
-  file.ThrowIfAny();
-
-  loaded.hand = LoadHand(urdf_file, layout, of_hand, &loaded.report);
+  HandLayout layout;
+  ReadNumbers(file, &layout);
+  if (!ReadJoints(file, &layout)) RefuseWithoutHand(file, urdf_file, nullptr);
+  try {
+    loaded.hand = LoadHand(urdf_file, layout, of_hand, &loaded.report);
+  } catch (const ModelError& error) {
+    RefuseWithoutHand(file, urdf_file, &error);
+  }
   loaded.hand.name = toml_file.stem().string();
   scenario.name = scenario.hand = loaded.hand.name;
   scenario.q_preshape = ReadPosture(file, "q_preshape_deg", loaded.hand);

@@ -26,6 +26,9 @@ class TomlFile {
   void Add(const toml::node& at, fmt::format_string<Args...> format, Args&&... args) const {
     problems_.Add(static_cast<int>(at.source().begin.line), format, std::forward<Args>(args)...);
   }
+  /// What a file that this one names was refused for.
+  void Add(const ModelError& error) const { problems_.Add(error); }
+  std::size_t count() const { return problems_.count(); }
   void ThrowIfAny() const { problems_.ThrowIfAny(); }
 
   void CheckKeys(const toml::table& table, const std::vector<std::string>& allowed) const;

@@ -16,6 +16,7 @@
 
 #include "core/files/draft.h"
 #include "core/files/names.h"
+#include "core/files/problem_list.h"
 #include "core/files/read_file.h"
 #include "core/files/toml_text.h"
 
@@ -40,6 +41,25 @@ class Files : public ::testing::Test {
   }
   fs::path directory;
 };
+
+TEST(ProblemList, IsOneLineOrOneALineInTheOrderOfTheFile) {
+  ProblemList list;
+  EXPECT_TRUE(list.empty());
+  list.Add("whole");
+  EXPECT_EQ(list.Text(), "whole");
+  list.Add(7, "f:7: b\x1b[2J\nc");
+  list.Add(3, "f:3: a");
+  list.Add(3, "f:3: a");
+  EXPECT_EQ(list.Text(), "3 errors:\n  f:3: a\n  f:7: b\\x1b[2J\\x0ac\n  whole");
+}
+
+TEST(ProblemList, CountsWhatAreTooMany) {
+  ProblemList list;
+  for (int i = 1; i <= 60; ++i) list.Add(i, "f:" + std::to_string(i));
+  EXPECT_EQ(list.count(), 60u);
+  EXPECT_EQ(list.Messages().size(), 51u);
+  EXPECT_EQ(list.Messages().back(), "and 10 more");
+}
 
 TEST(Names, OfPeopleAreTaken) {
   for (const char* name : {"ring", "joint_0.0", "WRJ1", "Daumen (Kuppe)", "親指", "a b", "é"})
