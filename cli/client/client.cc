@@ -63,6 +63,20 @@ sockaddr_un Address(const std::string& path) {
                  "regrasp doctor");
 }
 
+/// An error of the wire, with those that it is made of.
+CliError Refusal(const Json& error) {
+  const int code = error.value("code", 0);
+  CliError refusal(ExitCodeFor(code), error.value("message", "refused without a reason"), "", code);
+  if (!error.contains("data") || !error["data"].is_object()) return refusal;
+  const Json& data = error["data"];
+  refusal.hint = data.value("hint", "");
+  refusal.rpc_param = data.value("param", "");
+  for (const Json& one : data.value("errors", Json::array()))
+    refusal.rpc_errors.push_back(Refusal(one));
+  refusal.is_list = !refusal.rpc_errors.empty();
+  return refusal;
+}
+
 }  // namespace
 
 Client::Client(std::string path, double timeout_s) : path_(std::move(path)), timeout_s_(timeout_s) {
@@ -159,16 +173,7 @@ std::optional<Client::Message> Client::ReadMessage(Clock::time_point deadline) {
   const Json id = message.value("id", Json());
   Message answer{id.is_number_integer() ? id.get<long>() : -1, message.value("result", Json())};
   if (message.contains("error")) {
-    const Json& error = message["error"];
-    const int code = error.value("code", 0);
-    std::string hint, param;
-    if (error.contains("data") && error["data"].is_object()) {
-      hint = error["data"].value("hint", "");
-      param = error["data"].value("param", "");
-    }
-    answer.error.emplace(ExitCodeFor(code), error.value("message", "refused without a reason"),
-                         hint, code);
-    answer.error->rpc_param = param;
+    answer.error = Refusal(message["error"]);
     // Refused before its id was understood: of the last request.
     if (id.is_null()) answer.id = next_id_ - 1;
   } else if (!message.contains("result")) {

@@ -13,9 +13,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string_view>
 
 #include "cli/client/client.h"
 #include "cli/client/errors.h"
+#include "cli/client/program.h"
 
 namespace regrasp::cli {
 namespace {
@@ -26,9 +30,9 @@ bool Executable(const fs::path& path) {
   return ::access(path.c_str(), X_OK) == 0 && fs::is_regular_file(path);
 }
 
-/// The last lines of a file, at most `count`.
-std::string Tail(const std::string& path, std::size_t count) {
-  std::ifstream file(path);
+/// The last lines of a text, at most `count`.
+std::string Tail(const std::string& written, std::size_t count) {
+  std::istringstream file(written);
   std::vector<std::string> lines;
   for (std::string line; std::getline(file, line);) lines.push_back(line);
   std::string text;
@@ -36,6 +40,18 @@ std::string Tail(const std::string& path, std::size_t count) {
     text += (text.empty() ? "" : " | ") + lines[i];
   }
   return text;
+}
+
+/// The error that a `regraspd` wrote before it ended, of a list every line, without its name and
+/// the next command; "" where it wrote none.
+std::string DaemonError(const std::string& written) {
+  constexpr std::string_view kName = "regraspd: ";
+  const std::string text = "\n" + written;
+  std::size_t begin = text.rfind("\n" + std::string(kName));
+  if (begin == std::string::npos) return "";
+  begin += 1 + kName.size();
+  const std::size_t end = std::min(text.find("\ntry: ", begin), text.find_last_not_of('\n') + 1);
+  return text.substr(begin, end - begin);
 }
 
 /// This program's environment, without what `surroundings` keeps from the daemon.
@@ -97,6 +113,18 @@ std::string FindDaemon() {
                  "regrasp doctor");
 }
 
+std::string AskDaemonProgram(std::vector<std::string> words, const std::string& option,
+                             const std::string& next) {
+  words.insert(words.begin(), FindDaemon());
+  words.push_back(option);
+  const Finished finished = RunProgram(words);
+  if (finished.code == 0) return finished.out;
+  std::string cause = DaemonError(finished.err);
+  if (cause.empty()) cause = finished.err.substr(0, finished.err.find('\n'));
+  const bool known = finished.code == 2 || finished.code == 6 || finished.code == 77;
+  throw CliError::List(known ? static_cast<ExitCode>(finished.code) : kFailed, cause, next);
+}
+
 StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
                           double timeout_s, Surroundings surroundings) {
   const std::string daemon = FindDaemon();
@@ -137,16 +165,21 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
       int status = 0;
       if (::waitpid(started.pid, &status, WNOHANG) == started.pid) {
         const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-        const std::string last = Tail(started.log, 3);
+        std::ifstream log(started.log);
+        const std::string written{std::istreambuf_iterator<char>(log), {}};
+        const std::string cause = DaemonError(written), last = Tail(written, 3);
         const auto exit_code = code == 2 || code == 5 || code == 6 || code == 74 || code == 77
                                    ? static_cast<ExitCode>(code)
                                    : kFailed;
+        const std::string next = "regraspd --help, or cat " + started.log;
+        if (cause.find('\n') != std::string::npos)
+          throw CliError::List(exit_code, "regraspd: " + cause, next);
         throw CliError(exit_code,
                        last.empty() ? fmt::format("regraspd ended at once ({} {})",
                                                   WIFSIGNALED(status) ? "signal" : "exit code",
                                                   WIFSIGNALED(status) ? WTERMSIG(status) : code)
                                     : last,
-                       "regraspd --help, or cat " + started.log);
+                       next);
       }
       if (Clock::now() > deadline) {
         throw CliError(kTimeout, fmt::format("regraspd is not ready after {:g} s", timeout_s),

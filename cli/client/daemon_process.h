@@ -21,6 +21,11 @@ struct StartedDaemon {
   std::string socket, log;
 };
 
+/// What `regraspd words... option` prints before it ends. Throws its error as CliError, with `next`
+/// as the next command.
+std::string AskDaemonProgram(std::vector<std::string> words, const std::string& option,
+                             const std::string& next);
+
 /// Starts `regraspd --socket socket arguments…` in the background, its output in a log file beside
 /// the socket, and waits until it accepts connections. Makes the socket's directory (0700) if it is
 /// missing. Throws CliError: with the end of the log when the daemon ends at once, kTimeout when it

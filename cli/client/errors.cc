@@ -24,7 +24,7 @@ void PrintError(const CliError& error, bool json, bool color) {
     text += '\n';
   } else {
     text = fmt::format("{}regrasp:{} {}\n", color ? "\x1b[31m" : "", color ? "\x1b[0m" : "",
-                       ShownText(error.what()));
+                       error.is_list ? ShownLines(error.what()) : ShownText(error.what()));
     if (!error.hint.empty()) text += fmt::format("  try: {}\n", ShownText(error.hint));
   }
   std::fwrite(text.data(), 1, text.size(), stderr);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/protocol/errors.h"
 
@@ -12,19 +13,34 @@ namespace regrasp::cli {
 
 using enum ExitCode;
 
-/// An error with its exit code. `what()` is one line: cause, path or value. `hint` is the next
-/// command to try, or empty.
+/// An error with its exit code. `what()` is one line: cause, path or value; or, where much is wrong
+/// with a file, a list (ProblemList::Text). `hint` is the next command to try, or empty.
 class CliError : public std::runtime_error {
  public:
   CliError(ExitCode exit_code, const std::string& cause, std::string next = "", int rpc = 0)
       : std::runtime_error(cause), code(exit_code), hint(std::move(next)), rpc_code(rpc) {}
+  /// One whose lines are shown as lines, as ProblemList::Text() makes them.
+  static CliError List(ExitCode exit_code, const std::string& cause, std::string next) {
+    CliError error(exit_code, cause, std::move(next));
+    error.is_list = true;
+    return error;
+  }
+  /// The same error with another cause and next command.
+  CliError With(const std::string& cause, std::string next) const {
+    CliError other(code, cause, std::move(next), rpc_code);
+    other.is_list = is_list;
+    return other;
+  }
   ExitCode code;
   std::string hint;
-  int rpc_code;           ///< JSON-RPC error code when the daemon refused, else 0
-  std::string rpc_param;  ///< the parameter it blames, or ""
+  int rpc_code;                           ///< JSON-RPC error code when the daemon refused, else 0
+  std::string rpc_param;                  ///< the parameter it blames, or ""
+  std::vector<CliError> rpc_errors = {};  ///< where several are at fault, each by itself
+  bool is_list = false;  ///< the lines of what() are shown as lines, else the whole as one
 };
 
-/// Writes `error` to stderr: two lines of text, or with `json` one object {"error": {…}}.
+/// Writes `error` to stderr: two lines of text (of a list more), or with `json` one object
+/// {"error": {…}}.
 void PrintError(const CliError& error, bool json, bool color);
 
 /// `text` as a JSON string literal, quotes included. Invalid UTF-8 bytes become U+FFFD.

@@ -4,7 +4,6 @@
 
 #include "cli/client/context.h"
 #include "cli/client/daemon_process.h"
-#include "cli/client/program.h"
 #include "core/protocol/config_path.h"
 
 namespace regrasp::cli {
@@ -13,16 +12,10 @@ namespace {
 constexpr const char* kGroup = "Tools";
 
 /// What `regraspd --config FILE OPTION` prints. Throws its error as ours.
-std::string AskDaemonProgram(const std::string& file, const char* option) {
-  std::vector<std::string> words = {FindDaemon(), option};
-  if (!file.empty()) words.insert(words.end(), {"--config", file});
-  const Finished finished = RunProgram(words);
-  if (finished.code == 0) return finished.out;
-  std::string cause = finished.err.substr(0, finished.err.find('\n'));
-  if (cause.starts_with("regraspd: ")) cause.erase(0, 10);
-  const ExitCode code = static_cast<ExitCode>(finished.code);
-  throw CliError(code == kUsage || code == kNotFound ? code : kFailed, cause,
-                 "regraspd --print-default-config");
+std::string Ask(const std::string& file, const char* option) {
+  const std::vector<std::string> words = {"--config", file};
+  return AskDaemonProgram(file.empty() ? std::vector<std::string>() : words, option,
+                          "regraspd --print-default-config");
 }
 
 /// As TOML writes it.
@@ -34,7 +27,7 @@ std::string Toml(const Json& value) {
 }
 
 ExitCode Show(Context& context, const Invocation& invocation) {
-  Json answer = Json::parse(AskDaemonProgram(invocation.Text("config"), "--print-config"));
+  Json answer = Json::parse(Ask(invocation.Text("config"), "--print-config"));
   const bool origin = invocation.Has("origin"), all = context.options().verbose;
   std::vector<Json> rows;
   for (const char* part : {"keys", "parameters"})
@@ -61,7 +54,7 @@ ExitCode Show(Context& context, const Invocation& invocation) {
 }
 
 ExitCode Check(Context& context, const Invocation& invocation) {
-  AskDaemonProgram(invocation.Text("file"), "--check-config");
+  Ask(invocation.Text("file"), "--check-config");
   const std::string file = invocation.Has("file") ? invocation.Text("file") : UsualConfigFile();
   context.Print({{"ok", true}, {"file", file.empty() ? Json() : Json(file)}}, [&] {
     context.out().Line(file.empty() ? "no configuration file; built in values and models are fine"

@@ -17,7 +17,8 @@ CliError ForPeople(const CliError& error, const std::string& words) {
                            : words.starts_with("param ") ? "regrasp param list"
                                                          : "regrasp help " + words;
   const std::string cause = error.what();
-  return {error.code, error.hint.empty() ? cause : cause + "; " + error.hint, next, error.rpc_code};
+  const bool whole = error.hint.empty() || error.is_list;
+  return error.With(whole ? cause : cause + "; " + error.hint, next);
 }
 
 }  // namespace
@@ -29,8 +30,8 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
   for (const auto& word : words) argv.push_back(word.c_str());
   const int argc = static_cast<int>(argv.size());
   const auto fail = [&](const CliError& error) {
-    const CliError placed(error.code, where + error.what(), error.hint, error.rpc_code);
-    PrintError(placed, defaults.json || WantsJson(argc, argv.data()),
+    PrintError(error.With(where + error.what(), error.hint),
+               defaults.json || WantsJson(argc, argv.data()),
                WantsColor(options.color, STDERR_FILENO));
     return error.code;
   };

@@ -14,6 +14,7 @@
 #include "cli/client/context.h"
 #include "cli/grammar/units.h"
 #include "core/files/draft.h"
+#include "core/files/problem_list.h"
 #include "core/files/toml_text.h"
 
 namespace regrasp::cli {
@@ -223,6 +224,23 @@ ParameterFile ReadFile(const std::string& file) {
   return read;
 }
 
+/// A refusal with the places in the file of what it blames.
+CliError Placed(const CliError& error, const std::string& file, const ParameterFile& read) {
+  const auto line_of = [&](const CliError& one) {
+    const auto line = read.lines.find(one.rpc_param);
+    return line == read.lines.end() ? 0 : static_cast<int>(line->second);
+  };
+  const auto placed = [&](const CliError& one) {
+    const int line = line_of(one);
+    return line == 0 ? one.what() : fmt::format("{}:{}: {}", file, line, one.what());
+  };
+  if (error.rpc_errors.empty()) return error.With(placed(error), error.hint);
+  ProblemList problems;
+  for (const CliError& one : error.rpc_errors)
+    problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
+  return error.With(problems.Text(), "regrasp param list");
+}
+
 ExitCode Load(Context& context, const Invocation& invocation) {
   const std::string file = invocation.Text("file");
   const ParameterFile read = ReadFile(file);
@@ -230,10 +248,7 @@ ExitCode Load(Context& context, const Invocation& invocation) {
   try {
     answer = context.client().Call("param.load", {{"parameters", read.values}});
   } catch (const CliError& error) {
-    const auto line = read.lines.find(error.rpc_param);
-    if (line == read.lines.end()) throw;
-    throw CliError(error.code, fmt::format("{}:{}: {}", file, line->second, error.what()),
-                   error.hint, error.rpc_code);
+    throw Placed(error, file, read);
   }
   context.Print(answer, [&] {
     Output& out = context.out();

@@ -7,13 +7,13 @@
 #include "cli/client/config_file.h"
 #include "cli/client/context.h"
 #include "cli/client/daemon_process.h"
-#include "cli/client/program.h"
 #include "cli/demo/demo.h"
 #include "core/protocol/socket_path.h"
 
 namespace regrasp::cli {
 namespace {
 
+constexpr const char* kHelp = "regraspd --help";
 constexpr const char* kGroup = "Run";
 
 /// Options that go to the daemon as they are.
@@ -68,22 +68,10 @@ std::vector<std::string> DaemonWords(const Invocation& invocation) {
   return words;
 }
 
-/// The standard output of `regraspd words... action`. Throws CliError as it refuses them.
-std::string AskProgram(std::vector<std::string> words, const char* action) {
-  words.insert(words.begin(), FindDaemon());
-  words.emplace_back(action);
-  const Finished finished = RunProgram(words);
-  if (finished.code == 0) return finished.out;
-  std::string cause = finished.err.substr(0, finished.err.find('\n'));
-  if (cause.starts_with("regraspd: ")) cause.erase(0, std::string("regraspd: ").size());
-  const bool known = finished.code == 2 || finished.code == 6 || finished.code == 77;
-  throw CliError(known ? static_cast<ExitCode>(finished.code) : kFailed, cause, "regraspd --help");
-}
-
 /// What the options of this call, file and environment make of every key: {KEY: {value, origin}}.
 Json Resolve(const std::vector<std::string>& words) {
   Json keys;
-  const Json config = Json::parse(AskProgram(words, "--print-config"));
+  const Json config = Json::parse(AskDaemonProgram(words, "--print-config", kHelp));
   for (const Json& key : config.at("keys")) keys[Plain(key.at("name"))] = key;
   return keys;
 }
@@ -126,7 +114,7 @@ bool Running(const std::string& socket, double timeout_s) {
 void CheckSame(const Invocation& invocation, const std::vector<std::string>& words,
                const Json& wanted, const std::string& socket, const Json& status) {
   if (words.empty()) return;
-  AskProgram(words, "--check-config");
+  AskDaemonProgram(words, "--check-config", kHelp);
   const std::string differences = Differences(wanted, invocation, status);
   if (!differences.empty())
     throw CliError(kRefused,

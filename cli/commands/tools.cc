@@ -16,6 +16,7 @@
 #include "cli/help/manual.h"
 #include "cli/shell/shell.h"
 #include "core/files/json_text.h"
+#include "core/files/names.h"
 #include "core/quality/evaluate_json.h"
 
 namespace regrasp::cli {
@@ -60,9 +61,10 @@ ExitCode Evaluate(Context& context, const Invocation& invocation) {
   try {
     answer = Json::parse(EvaluateJson(text));
   } catch (const std::invalid_argument& failure) {
-    throw CliError(kUsage,
-                   fmt::format("{}: {}", standard_input ? "standard input" : name, failure.what()),
-                   "regrasp help evaluate");
+    throw CliError::List(
+        kUsage,
+        fmt::format("{}: {}", standard_input ? "standard input" : ShownText(name), failure.what()),
+        "regrasp help evaluate");
   }
   context.Print(answer, [&] {
     for (const auto& [key, value] : answer.items())

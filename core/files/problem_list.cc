@@ -6,11 +6,6 @@
 #include "core/files/names.h"
 
 namespace regrasp {
-namespace {
-
-constexpr std::size_t kMost = 50;  // kept; the others are counted
-
-}  // namespace
 
 void ProblemList::Add(int line, const std::string& message) {
   ++count_;

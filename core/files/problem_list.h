@@ -11,6 +11,8 @@ namespace regrasp {
 
 class ProblemList {
  public:
+  static constexpr std::size_t kMost = 50;  ///< kept; the others are counted
+
   /// A message, as it may be shown to people (ShownText: one line). `line`: where it stands in its
   /// file; those without one (0) are told last. What is there already is not told twice.
   void Add(int line, const std::string& message);

@@ -18,44 +18,55 @@ std::string Number(double value) {
   return text;
 }
 
-void RequireRange(const std::string& name, double value, double least, double most) {
-  if (value >= least && value <= most) return;  // false for NaN
-  throw std::invalid_argument(name + ": " + Number(value) + "; allowed: " + Number(least) +
-                              " ... " + Number(most));
-}
-
-void RequireRange(const std::string& name, const Vector3d& v, double most) {
-  for (int k = 0; k < 3; ++k) RequireRange(name + "[" + std::to_string(k) + "]", v(k), -most, most);
-}
-
 constexpr double kUnitTolerance = 1e-3;
 
-void Validate(const EvaluateInput& input) {
-  if (input.contacts.empty()) throw std::invalid_argument("contacts: none; allowed: at least 1");
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    const GraspContact& contact = input.contacts[i];
-    const std::string name = "contacts[" + std::to_string(i) + "].";
-    RequireRange(name + "position_m", contact.position, 10.0);
-    RequireRange(name + "normal", contact.inward_normal, 1.0 + kUnitTolerance);
-    const double length = contact.inward_normal.norm();
-    if (std::abs(length - 1.0) > kUnitTolerance)
-      throw std::invalid_argument(name + "normal: length " + Number(length) +
-                                  "; allowed: a unit vector (within 0.001)");
-    RequireRange(name + "mu", contact.mu, 0.0, 10.0);
-    RequireRange(name + "torsional_mu", contact.torsion, 0.0, 10.0);
+/// Judges numbers one by one and keeps what is wrong with them.
+struct Judge {
+  std::vector<std::string> faults = {};
+
+  bool InRange(const std::string& name, double value, double least, double most) {
+    if (value >= least && value <= most) return true;  // false for NaN
+    faults.push_back(name + ": " + Number(value) + "; allowed: " + Number(least) + " ... " +
+                     Number(most));
+    return false;
   }
-  RequireRange("torque_scale_m", input.torque_scale, 1e-4, 10.0);
-  RequireRange("cone_edges", input.cone_edges, 3, 1024);
-  const std::size_t wrenches = input.contacts.size() * static_cast<std::size_t>(input.cone_edges);
-  if (wrenches > kMaxEvaluateWrenches)
-    throw std::invalid_argument("contacts * cone_edges: " + std::to_string(wrenches) +
-                                "; allowed: at most " + std::to_string(kMaxEvaluateWrenches));
-  if (input.weight) RequireRange("weight_n", *input.weight, 1e6);
-  if (!(input.max_force > 0.0))
-    throw std::invalid_argument("max_force_n: " + Number(input.max_force) + "; allowed: above 0");
-}
+  bool InRange(const std::string& name, const Vector3d& v, double most) {
+    bool all = true;
+    for (int k = 0; k < 3; ++k)
+      all &= InRange(name + "[" + std::to_string(k) + "]", v(k), -most, most);
+    return all;
+  }
+  void Contact(const std::string& name, const GraspContact& contact) {
+    InRange(name + "position_m", contact.position, 10.0);
+    const double length = contact.inward_normal.norm();
+    if (InRange(name + "normal", contact.inward_normal, 1.0 + kUnitTolerance) &&
+        std::abs(length - 1.0) > kUnitTolerance)
+      faults.push_back(name + "normal: length " + Number(length) +
+                       "; allowed: a unit vector (within 0.001)");
+    InRange(name + "mu", contact.mu, 0.0, 10.0);
+    InRange(name + "torsional_mu", contact.torsion, 0.0, 10.0);
+  }
+};
 
 }  // namespace
+
+std::vector<std::string> Faults(const EvaluateInput& input) {
+  Judge judge;
+  if (input.contacts.empty()) judge.faults.emplace_back("contacts: none; allowed: at least 1");
+  for (std::size_t i = 0; i < input.contacts.size(); ++i)
+    judge.Contact("contacts[" + std::to_string(i) + "].", input.contacts[i]);
+  judge.InRange("torque_scale_m", input.torque_scale, 1e-4, 10.0);
+  if (judge.InRange("cone_edges", input.cone_edges, 3, 1024)) {
+    const std::size_t wrenches = input.contacts.size() * static_cast<std::size_t>(input.cone_edges);
+    if (wrenches > kMaxEvaluateWrenches)
+      judge.faults.push_back("contacts * cone_edges: " + std::to_string(wrenches) +
+                             "; allowed: at most " + std::to_string(kMaxEvaluateWrenches));
+  }
+  if (input.weight) judge.InRange("weight_n", *input.weight, 1e6);
+  if (!(input.max_force > 0.0))
+    judge.faults.push_back("max_force_n: " + Number(input.max_force) + "; allowed: above 0");
+  return judge.faults;
+}
 
 bool NormalsPointAway(const EvaluateInput& input) {
   return !input.contacts.empty() && std::ranges::all_of(input.contacts, [](const auto& contact) {
@@ -64,7 +75,8 @@ bool NormalsPointAway(const EvaluateInput& input) {
 }
 
 EvaluateOutput Evaluate(const EvaluateInput& input) {
-  Validate(input);
+  if (const std::vector<std::string> faults = Faults(input); !faults.empty())
+    throw std::invalid_argument(faults.front());
   std::vector<GraspContact> contacts = input.contacts;
   for (GraspContact& contact : contacts) contact.inward_normal.normalize();
 

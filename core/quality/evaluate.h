@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/quality/grasp.h"
@@ -42,8 +43,11 @@ inline constexpr std::size_t kMaxEvaluateWrenches = 8192;  ///< contacts * cone_
 /// Whether every normal points away from the centre: it was probably given outwards.
 bool NormalsPointAway(const EvaluateInput& input);
 
+/// Every number that is out of range: field, value and what is allowed.
+std::vector<std::string> Faults(const EvaluateInput& input);
+
 /// Computes every measure. Slow (milliseconds),
-/// allocates. Throws std::invalid_argument naming field, value and what is allowed.
+/// allocates. Throws std::invalid_argument with the first of Faults().
 EvaluateOutput Evaluate(const EvaluateInput& input);
 
 }  // namespace regrasp

@@ -6,11 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
-#include <string_view>
 #include <vector>
 
 #include "core/common/nearest_name.h"
 #include "core/files/json_text.h"
+#include "core/files/names.h"
+#include "core/files/problem_list.h"
 #include "core/quality/evaluate.h"
 
 namespace regrasp {
@@ -20,11 +21,13 @@ using Json = nlohmann::json;
 
 constexpr int kMaxDepth = 32;
 
-[[noreturn]] void Fail(const std::string& message) { throw std::invalid_argument(message); }
+[[noreturn]] void Fail(const std::string& message) {
+  throw std::invalid_argument(ShownText(message));
+}
 
-/// Parses strictly: no duplicate names, bounded depth, finite numbers (the parser refuses
-/// overflow).
-Json Parse(const std::string& text) {
+/// Parses strictly: bounded depth, finite numbers (the parser refuses overflow); a name that is
+/// given twice is a problem.
+Json Parse(const std::string& text, ProblemList* problems) {
   std::vector<std::set<std::string>> names;
   const auto check = [&](int depth, Json::parse_event_t event, Json& parsed) {
     using Event = Json::parse_event_t;
@@ -33,7 +36,7 @@ Json Parse(const std::string& text) {
     if (event == Event::object_start) names.emplace_back();
     if (event == Event::object_end) names.pop_back();
     if (event == Event::key && !names.back().insert(parsed.get<std::string>()).second)
-      Fail(parsed.get<std::string>() + ": given twice");
+      problems->Add(parsed.get<std::string>() + ": given twice");
     return true;
   };
   try {
@@ -51,126 +54,187 @@ std::string Quoted(const Json& value) {
   return text;
 }
 
-void RequireObject(const Json& value, const std::string& path, const std::string& prefix,
-                   std::initializer_list<const char*> known) {
-  if (!value.is_object()) Fail(path + ": " + Quoted(value) + "; allowed: an object");
-  for (const auto& item : value.items()) {
-    const auto matches = [&](const char* name) { return item.key() == name; };
-    if (std::any_of(known.begin(), known.end(), matches)) continue;
-    const char* nearest = *std::min_element(known.begin(), known.end(), [&](auto a, auto b) {
-      return EditDistance(item.key().substr(0, 64), a) < EditDistance(item.key().substr(0, 64), b);
-    });
-    Fail(prefix + item.key().substr(0, 64) + ": unknown name; nearest: " + nearest);
-  }
-}
-
-const Json& Member(const Json& object, const std::string& prefix, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end()) Fail(prefix + name + ": missing");
-  return *found;
-}
-
-double ToNumber(const Json& value, const std::string& path) {
-  if (!value.is_number()) Fail(path + ": " + Quoted(value) + "; allowed: a number");
-  return value.get<double>();
-}
-
-Vector3d ToVector(const Json& value, const std::string& path) {
-  if (!value.is_array() || value.size() != 3)
-    Fail(path + ": " + Quoted(value) + "; allowed: an array of 3 numbers");
-  Vector3d v;
-  for (int k = 0; k < 3; ++k) v(k) = ToNumber(value[k], path + "[" + std::to_string(k) + "]");
-  return v;
-}
-
-int ToEdges(const Json& edges) {
-  const double number = edges.is_number() ? edges.get<double>() : 0.5;
-  if (number != std::floor(number) || std::abs(number) > 1e6)
-    Fail("cone_edges: " + Quoted(edges) + "; allowed: an integer, 3 ... 1024");
-  return static_cast<int>(number);
-}
-
-/// +1 where normals point into the object, -1 where they point out of it.
-double Sense(const Json& file) {
-  const auto normals = file.find("normals");
-  if (normals == file.end() || *normals == "inward") return 1;
-  if (*normals == "outward") return -1;
-  Fail("normals: " + Quoted(*normals) + "; allowed: \"inward\", \"outward\"");
-}
-
-void ReadOptions(const Json& file, EvaluateInput* input) {
-  if (const auto edges = file.find("cone_edges"); edges != file.end())
-    input->cone_edges = ToEdges(*edges);
-  if (const auto weight = file.find("weight_n"); weight != file.end())
-    input->weight = ToVector(*weight, "weight_n");
-  if (const auto force = file.find("max_force_n"); force != file.end())
-    input->max_force = ToNumber(*force, "max_force_n");
-}
-
 double MeanDistance(const std::vector<GraspContact>& contacts) {
   double sum = 0;
   for (const GraspContact& contact : contacts) sum += contact.position.norm();
   return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
 }
 
-/// What `regrasp contacts --json` prints: the fingers that hold, about the sensed centre of the
-/// object. Measures of its own that this format does not know are passed over.
-EvaluateInput FromContacts(const Json& file) {
-  EvaluateInput input;
-  const Json& fingers = Member(file, "", "fingers");
-  const Json& object = Member(file, "", "object");
-  if (!fingers.is_object()) Fail("fingers: " + Quoted(fingers) + "; allowed: an object");
-  if (!object.is_object()) Fail("object: " + Quoted(object) + "; allowed: an object");
-  const Vector3d centre = ToVector(Member(object, "object.", "p_WO_m"), "object.p_WO_m");
-  const double mu = ToNumber(Member(file, "", "friction"), "friction");
-  const double sense = Sense(file);
-  for (const auto& [name, finger] : fingers.items()) {
-    const std::string prefix = "fingers." + name.substr(0, 64) + ".";
-    if (!finger.is_object()) Fail(prefix + ": " + Quoted(finger) + "; allowed: an object");
-    if (Member(finger, prefix, "in_contact") != true) continue;
-    if (Member(finger, prefix, "role") == "free") continue;
-    input.contacts.push_back(
-        {ToVector(Member(finger, prefix, "p_WC_m"), prefix + "p_WC_m") - centre,
-         sense * ToVector(Member(finger, prefix, "normal_W"), prefix + "normal_W"), mu});
-  }
-  input.torque_scale = MeanDistance(input.contacts);
-  if (input.contacts.empty()) Fail("fingers: none holds the object");
-  ReadOptions(file, &input);
-  return input;
-}
+/// Reads what it can and gathers what is wrong; in its place stand values that are in range, so
+/// that nothing is blamed twice.
+class Reader {
+ public:
+  explicit Reader(ProblemList* problems) : problems_(problems) {}
 
-EvaluateInput FromGrasp(const Json& file) {
-  RequireObject(file, "the file", "",
-                {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n", "normals"});
-  EvaluateInput input;
-  const Json& contacts = Member(file, "", "contacts");
-  if (!contacts.is_array())
-    Fail("contacts: " + Quoted(contacts) + "; allowed: an array of objects");
-  const double sense = Sense(file);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::string path = "contacts[" + std::to_string(i) + "]";
+  EvaluateInput Read(const Json& file) {
+    return file.is_object() && file.contains("fingers") ? FromContacts(file) : FromGrasp(file);
+  }
+
+ private:
+  void Refuse(const std::string& path, const Json& value, const char* allowed) {
+    problems_->Add(path + ": " + Quoted(value) + "; allowed: " + allowed);
+  }
+
+  bool IsObject(const Json& value, const std::string& path) {
+    if (!value.is_object()) Refuse(path, value, "an object");
+    return value.is_object();
+  }
+
+  void CheckNames(const Json& object, const std::string& prefix,
+                  std::initializer_list<const char*> known) {
+    for (const auto& item : object.items()) {
+      const std::string name = item.key().substr(0, 64);
+      if (std::ranges::find(known, item.key()) != known.end()) continue;
+      const char* nearest = *std::ranges::min_element(
+          known, {}, [&](const char* one) { return EditDistance(name, one); });
+      problems_->Add(prefix + name + ": unknown name; nearest: " + nearest);
+    }
+  }
+
+  /// Null, and a problem, where it is missing.
+  const Json* Member(const Json& object, const std::string& prefix, const char* name) {
+    const auto found = object.find(name);
+    if (found != object.end()) return &*found;
+    problems_->Add(prefix + name + ": missing");
+    return nullptr;
+  }
+
+  double Number(const Json& value, const std::string& path, double otherwise) {
+    if (value.is_number()) return value.get<double>();
+    Refuse(path, value, "a number");
+    return otherwise;
+  }
+  double Number(const Json& object, const std::string& prefix, const char* name, double otherwise) {
+    const Json* value = Member(object, prefix, name);
+    return value ? Number(*value, prefix + name, otherwise) : otherwise;
+  }
+
+  Vector3d Vector(const Json& value, const std::string& path, const Vector3d& otherwise) {
+    if (!value.is_array() || value.size() != 3) {
+      Refuse(path, value, "an array of 3 numbers");
+      return otherwise;
+    }
+    Vector3d v;
+    bool numbers = true;
+    for (int k = 0; k < 3; ++k) {
+      v(k) = Number(value[k], path + "[" + std::to_string(k) + "]", 0);
+      numbers &= value[k].is_number();
+    }
+    return numbers ? v : otherwise;
+  }
+  Vector3d Vector(const Json& object, const std::string& prefix, const char* name,
+                  const Vector3d& otherwise) {
+    const Json* value = Member(object, prefix, name);
+    return value ? Vector(*value, prefix + name, otherwise) : otherwise;
+  }
+
+  int Edges(const Json& edges) {
+    const double number = edges.is_number() ? edges.get<double>() : 0.5;
+    if (number == std::floor(number) && std::abs(number) <= 1e6) return static_cast<int>(number);
+    Refuse("cone_edges", edges, "an integer, 3 ... 1024");
+    return EvaluateInput().cone_edges;
+  }
+
+  /// +1 where normals point into the object, -1 where they point out of it.
+  double Sense(const Json& file) {
+    const auto normals = file.find("normals");
+    if (normals == file.end() || *normals == "inward") return 1;
+    if (*normals == "outward") return -1;
+    Refuse("normals", *normals, "\"inward\", \"outward\"");
+    return 1;
+  }
+
+  void ReadOptions(const Json& file, EvaluateInput* input) {
+    if (const auto edges = file.find("cone_edges"); edges != file.end())
+      input->cone_edges = Edges(*edges);
+    if (const auto weight = file.find("weight_n"); weight != file.end())
+      input->weight = Vector(*weight, "weight_n", Vector3d::Zero());
+    if (const auto force = file.find("max_force_n"); force != file.end())
+      input->max_force = Number(*force, "max_force_n", input->max_force);
+  }
+
+  /// What `regrasp contacts --json` prints: the fingers that hold, about the sensed centre of the
+  /// object. Measures of its own that this format does not know are passed over.
+  EvaluateInput FromContacts(const Json& file) {
+    EvaluateInput input;
+    Vector3d centre = Vector3d::Zero();
+    if (const Json* object = Member(file, "", "object"); object && IsObject(*object, "object"))
+      centre = Vector(*object, "object.", "p_WO_m", centre);
+    const double mu = Number(file, "", "friction", harmless_.mu);
+    const double sense = Sense(file);
+    const Json& fingers = file["fingers"];
+    const std::size_t before = problems_->count();
+    if (IsObject(fingers, "fingers"))
+      for (const auto& [name, finger] : fingers.items()) {
+        const std::string prefix = "fingers." + name.substr(0, 64) + ".";
+        if (!IsObject(finger, prefix)) continue;
+        const Json* touches = Member(finger, prefix, "in_contact");
+        if (!touches || *touches != true) continue;
+        const Json* role = Member(finger, prefix, "role");
+        if (!role || *role == "free") continue;
+        input.contacts.push_back(
+            {Vector(finger, prefix, "p_WC_m", centre) - centre,
+             sense * Vector(finger, prefix, "normal_W", harmless_.inward_normal), mu});
+      }
+    if (input.contacts.empty() && problems_->count() == before)
+      problems_->Add("fingers: none holds the object");
+    ReadOptions(file, &input);
+    input.torque_scale = problems_->empty() ? MeanDistance(input.contacts) : kScale;
+    if (input.contacts.empty()) input.contacts.push_back(harmless_);
+    return input;
+  }
+
+  EvaluateInput FromGrasp(const Json& file) {
+    EvaluateInput input;
+    input.contacts = {harmless_};
+    input.torque_scale = kScale;
+    if (!IsObject(file, "the file")) return input;
+    CheckNames(file, "",
+               {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n", "normals"});
+    const double sense = Sense(file);
+    const Json* contacts = Member(file, "", "contacts");
+    if (contacts && !contacts->is_array())
+      Refuse("contacts", *contacts, "an array of objects");
+    else if (contacts) {
+      input.contacts.clear();
+      for (std::size_t i = 0; i < contacts->size(); ++i)
+        input.contacts.push_back(
+            Contact((*contacts)[i], "contacts[" + std::to_string(i) + "]", sense));
+    }
+    input.torque_scale = Number(file, "", "torque_scale_m", kScale);
+    ReadOptions(file, &input);
+    return input;
+  }
+
+  GraspContact Contact(const Json& contact, const std::string& path, double sense) {
+    if (!IsObject(contact, path)) return harmless_;
     const std::string prefix = path + ".";
-    RequireObject(contacts[i], path, prefix, {"position_m", "normal", "mu", "torsional_mu"});
-    const auto torsion = contacts[i].find("torsional_mu");
-    input.contacts.push_back(
-        {ToVector(Member(contacts[i], prefix, "position_m"), prefix + "position_m"),
-         sense * ToVector(Member(contacts[i], prefix, "normal"), prefix + "normal"),
-         ToNumber(Member(contacts[i], prefix, "mu"), prefix + "mu"),
-         torsion == contacts[i].end() ? 0.0 : ToNumber(*torsion, prefix + "torsional_mu")});
+    CheckNames(contact, prefix, {"position_m", "normal", "mu", "torsional_mu"});
+    const auto torsion = contact.find("torsional_mu");
+    return {Vector(contact, prefix, "position_m", harmless_.position),
+            sense * Vector(contact, prefix, "normal", harmless_.inward_normal),
+            Number(contact, prefix, "mu", harmless_.mu),
+            torsion == contact.end() ? 0.0 : Number(*torsion, prefix + "torsional_mu", 0.0)};
   }
-  input.torque_scale = ToNumber(Member(file, "", "torque_scale_m"), "torque_scale_m");
-  ReadOptions(file, &input);
-  return input;
-}
 
-EvaluateInput ToInput(const Json& file) {
-  return file.is_object() && file.contains("fingers") ? FromContacts(file) : FromGrasp(file);
+  static constexpr double kScale = 1;
+  const GraspContact harmless_;
+
+  ProblemList* problems_;
+};
+
+EvaluateInput ToInput(const std::string& text) {
+  ProblemList problems;
+  const EvaluateInput input = Reader(&problems).Read(Parse(text, &problems));
+  for (const std::string& fault : Faults(input)) problems.Add(fault);
+  if (!problems.empty()) throw std::invalid_argument(problems.Text());
+  return input;
 }
 
 }  // namespace
 
 std::string EvaluateJson(const std::string& text) {
-  const EvaluateInput input = ToInput(Parse(text));
+  const EvaluateInput input = ToInput(text);
   const EvaluateOutput measures = Evaluate(input);
   nlohmann::ordered_json out;
   for (const MeasureInfo& info : kMeasureTable) {

@@ -28,10 +28,10 @@ namespace regrasp {
 /// (force closure without max_force_n) is null with load_margin_unbounded true: JSON has no
 /// infinity.
 ///
-/// Throws std::invalid_argument, in one line that names field, value and what is allowed, for
-/// anything that is not such a file: malformed JSON (with line and column), deeper than 32 levels,
-/// duplicate or unknown names (with the nearest known one), missing fields, wrong types, numbers
-/// out of range or not finite.
+/// Throws std::invalid_argument for anything that is not such a file: malformed JSON (with line and
+/// column), deeper than 32 levels; and, all that there are of them (ProblemList::Text), duplicate
+/// or unknown names (with the nearest known one), missing fields, wrong types, numbers out of range
+/// or not finite, each with field, value and what is allowed.
 std::string EvaluateJson(const std::string& text);
 
 }  // namespace regrasp

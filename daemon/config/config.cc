@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
 #include <sstream>
 
 #include "core/common/nearest_name.h"
+#include "core/files/problem_list.h"
 #include "core/files/toml_text.h"
 #include "core/protocol/config_path.h"
 #include "core/session/parameter_value.h"
@@ -55,7 +55,7 @@ std::optional<GivenValue> Given(const toml::node& node) {
 struct Reader {
   const std::string& path;
   DaemonConfig* config;
-  std::multimap<std::uint32_t, std::string> errors = {};  // by line
+  ProblemList problems = {};
 
   std::string Place(const toml::node& node) const {
     return fmt::format("{}:{}", path, node.source().begin.line);
@@ -93,7 +93,7 @@ struct Reader {
     try {
       read();
     } catch (const ConfigError& error) {
-      errors.emplace(node.source().begin.line, error.what());
+      problems.Add(static_cast<int>(node.source().begin.line), error.what());
     }
   }
 
@@ -147,11 +147,7 @@ struct Reader {
   void Read(const toml::table& root) {
     for (const auto& [name, node] : root)
       Try(node, [&, &key = name, &value = node] { ReadEntry(key.str(), value); });
-    if (errors.empty()) return;
-    if (errors.size() == 1) throw ConfigError(errors.begin()->second);
-    std::string text = fmt::format("{} errors:", errors.size());
-    for (const auto& [line, error] : errors) text += "\n  " + error;
-    throw ConfigError(text);
+    if (!problems.empty()) throw ConfigError(problems.Text());
   }
 };
 

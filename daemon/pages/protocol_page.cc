@@ -146,7 +146,10 @@ std::string ProtocolPage() {
   page += ParameterSection() + MeasureSection();
   page += "## Fields of run files\n\n" + RunFieldTable() + "\n";
   page +=
-      "## Errors\n\n`{\"code\", \"message\", \"data\": {\"hint\", \"param\", \"allowed\"}}`\n\n"
+      "## Errors\n\n`{\"code\", \"message\", \"data\": {\"hint\", \"param\", \"allowed\", "
+      "\"errors\"}}`; "
+      "where `param.load` refuses several values, `errors` holds the error of each (50 at "
+      "most).\n\n"
       "| code | name | `regrasp` exits with | when |\n|---|---|---|---|\n";
   for (const ErrorInfo& info : ErrorTable())
     page += fmt::format("| {} | {} | {} | {} |\n", static_cast<int>(info.code), info.name,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/files/problem_list.h"
 #include "core/session/parameter_value.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
@@ -74,6 +75,33 @@ Command ReadMember(const Service& service, const std::string& name, const JsonIn
   return SetCommand(info, *given, name);
 }
 
+/// The commands that set every member. Throws one error of all that is at fault.
+std::vector<Command> ReadMembers(const Service& service, const JsonIn& members) {
+  std::vector<Command> commands;
+  std::vector<RpcError> errors;
+  for (const auto& [name, value] : members.items()) {
+    if (errors.size() == ProblemList::kMost) break;
+    try {
+      commands.push_back(ReadMember(service, name, value));
+    } catch (const RpcException& refused) {
+      errors.push_back(refused.error());
+    }
+  }
+  if (errors.empty()) return commands;
+  if (errors.size() == 1) throw RpcException(errors.front());
+  ProblemList problems;
+  for (RpcError& error : errors) {
+    problems.Add(fmt::format("{}; {}", error.message, error.hint));
+    error.allowed.clear();  // every parameter, again and again
+  }
+  throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                              problems.Text(),
+                              "call param.list for names and ranges",
+                              {},
+                              {},
+                              std::move(errors)});
+}
+
 /// What is to be done for all to have the values that the commands give them.
 std::vector<Command> Changes(const Service& service, std::vector<Command> commands) {
   std::ranges::stable_partition(commands, IsPreset, Row);
@@ -122,9 +150,7 @@ Outcome ParamSet(Service& service, const Params& params, Client&) {
 
 Outcome ParamLoad(Service& service, const Params& params, Client&) {
   service.CheckAllowed(CommandType::kParameter);
-  std::vector<Command> commands;
-  for (const auto& [name, value] : params.Object("parameters").items())
-    commands.push_back(ReadMember(service, name, value));
+  const std::vector<Command> commands = ReadMembers(service, params.Object("parameters"));
   const Json changed = service.ChangedParameters();
   const std::uint64_t barrier = service.SetParameters(Changes(service, commands));
   Json list = Json::array();

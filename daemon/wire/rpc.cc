@@ -176,6 +176,15 @@ Json IdJson(const std::optional<RequestId>& id) {
   return std::visit([](const auto& value) { return Json(value); }, *id);
 }
 
+Json ErrorJson(const RpcError& error) {
+  Json data = Json::object();
+  if (!error.hint.empty()) data["hint"] = error.hint;
+  if (!error.param.empty()) data["param"] = error.param;
+  if (!error.allowed.empty()) data["allowed"] = error.allowed;
+  for (const RpcError& one : error.errors) data["errors"].push_back(ErrorJson(one));
+  return {{"code", static_cast<int>(error.code)}, {"message", error.message}, {"data", data}};
+}
+
 }  // namespace
 
 RpcError InternalError(const std::exception& e) {
@@ -189,14 +198,7 @@ std::string ResultText(const std::optional<RequestId>& id, std::string_view resu
 }
 
 Json ErrorMessage(const std::optional<RequestId>& id, const RpcError& error) {
-  Json data = Json::object();
-  if (!error.hint.empty()) data["hint"] = error.hint;
-  if (!error.param.empty()) data["param"] = error.param;
-  if (!error.allowed.empty()) data["allowed"] = error.allowed;
-  return {{"jsonrpc", "2.0"},
-          {"id", IdJson(id)},
-          {"error",
-           {{"code", static_cast<int>(error.code)}, {"message", error.message}, {"data", data}}}};
+  return {{"jsonrpc", "2.0"}, {"id", IdJson(id)}, {"error", ErrorJson(error)}};
 }
 
 std::string ToText(const Json& message) { return JsonText(message); }

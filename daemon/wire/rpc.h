@@ -21,10 +21,11 @@ inline constexpr std::size_t kMaxAnswerBytes = 16 * 1024 * 1024;
 /// An error as it goes over the wire (rule 7).
 struct RpcError {
   ErrorCode code = ErrorCode::kInternal;
-  std::string message;               ///< cause, with the offending value
-  std::string hint;                  ///< what to try next
-  std::string param;                 ///< the parameter at fault, if one is
-  std::vector<std::string> allowed;  ///< its allowed values, if they can be listed
+  std::string message;                ///< cause, with the offending value
+  std::string hint;                   ///< what to try next
+  std::string param;                  ///< the parameter at fault, if one is
+  std::vector<std::string> allowed;   ///< its allowed values, if they can be listed
+  std::vector<RpcError> errors = {};  ///< where several are at fault, each by itself
 };
 
 /// Thrown anywhere below a handler; mapped to the wire in one place (Service::Call).

@@ -73,6 +73,16 @@ class Case(unittest.TestCase):
         self.assertTrue(lines[1].startswith("  try: "), done.stderr)
         return lines
 
+    def refused_list(self, code, *words, **options):
+        """An error of many: nothing on stdout, on stderr their number, one a line, the next command; returns the many."""
+        done = self.expect(code, *words, **options)
+        self.assertEqual(done.stdout, "")
+        first, *errors, last = done.stderr.splitlines()
+        self.assertRegex(first, f"^regrasp: .*\\b{len(errors)} errors:$")
+        self.assertTrue(last.startswith("  try: "), done.stderr)
+        self.assertEqual([line for line in errors if not line.startswith("  ")], [], done.stderr)
+        return [line[2:] for line in errors]
+
     def json(self, *words, code=0):
         """Runs with --json and returns the one object."""
         done = self.regrasp("--json", *words)

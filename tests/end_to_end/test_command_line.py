@@ -189,9 +189,12 @@ class Evaluate(Case):
         self.assertAlmostEqual(float(row["min_singular_value"]), math.sqrt(1.5), delta=1e-9)
 
     def test_refuses_bad_files_by_name(self):
-        for text in ["", "{", "[]", '{"contacts": 1}', json.dumps({**GRASP, "cone_edge": 8}), json.dumps(GRASP).replace("0.8", "NaN", 1)]:
+        for text in ["", "{", "[]", '{"contacts": 1, "torque_scale_m": 1}', json.dumps({**GRASP, "cone_edge": 8}), json.dumps(GRASP).replace("0.8", "NaN", 1)]:
             cause, _ = self.refused(2, "evaluate", self.write(text))
             self.assertIn("grasp.json", cause)
+        errors = self.refused_list(2, "evaluate", self.write('{"contacts": [{"mu": -1, "position_m": [0, 0, 1]}], "cone_edge\\n": 8}'))
+        self.assertEqual(errors, ["cone_edge\\x0a: unknown name; nearest: cone_edges", "contacts[0].normal: missing", "torque_scale_m: missing",
+                                  "contacts[0].mu: -1; allowed: 0 ... 10"])
         self.refused(6, "evaluate", self.dir / "absent.json")
         if os.geteuid() != 0:
             file = self.write(GRASP)

@@ -77,6 +77,13 @@ class Parameters(DaemonCase):
             file.write_text(text)
             self.assertIn(line, self.refused(code, "param", "load", file)[0])
             self.assertEqual(self.changed(), {}, text)
+        file.write_text("[parameters]\nobject.friction = 7\ngait.mod = 1\ngait.hop = false\ngait.mode = 'walk'\ngait.lead = nan\n")
+        errors = self.refused_list(2, "param", "load", file)
+        for error, place in zip(errors, (":2: object.friction = 7 is out of range; allowed: 0.01 ... 1", ":3: no parameter named 'gait.mod'; did you mean 'gait.mode'?",
+                                         ":5: gait.mode = 'walk': expected exploring or returning", ":6: gait.lead: expected")):
+            self.assertTrue(error.startswith(f"{file}{place}"), errors)
+        self.assertEqual(self.changed(), {})
+        self.assertIn("4 errors:\n", self.regrasp("--json", "param", "load", file).stderr.encode().decode("unicode_escape"))
         self.refused(6, "param", "load", self.dir / "absent.toml")
         self.refused(74, "param", "save", self.dir / "absent" / "x.toml")
         self.assertEqual([path.name for path in self.dir.iterdir() if path.name.endswith(".part") or path.name.startswith(".")], [])

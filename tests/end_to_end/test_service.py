@@ -79,6 +79,13 @@ class Config(Case):
             for part in parts:
                 self.assertIn(part, cause)
             self.assertIn("--print-default-config", hint)
+        file = self.write("noise = 'papr'\nspede = 2\n[parameters]\nobject.friction = 99\ngait.mod = 1\ngravity = [0, 0]\n")
+        places = [":1: noise = ", ":2: unknown key 'spede'", ":4: object.friction = 99 is out of range", ":5: unknown parameter 'gait.mod'", ":6: gravity is"]
+        for words in (["config", "check", file], ["up", "--config", file]):
+            errors = self.refused_list(2, *words)
+            self.assertEqual(len(errors), len(places))
+            for error, place in zip(errors, places):
+                self.assertTrue(error.startswith(f"{file}{place}"), errors)
         self.refused(2, "config", "check", self.dir / "absent.toml")
         cause, _ = self.refused(6, "config", "check", self.write('object = "unicorn"\n'))
         self.assertIn("unicorn", cause)

@@ -94,6 +94,22 @@ TEST_F(ParameterRequests, ManyAreSetOrNone) {
   EXPECT_EQ(load({{"gait.hop", false}, {"gait.mood", 1}})["error"]["code"], -32003);
   EXPECT_EQ(load({{"gait.hop", false}, {"gravity", {{"x", 1}}}})["error"]["code"], -32602);
   EXPECT_EQ(client->Error("param.load", {{"parameters", 3}}), -32602);
+  // All that is wrong is told at once.
+  const Json many = load(
+      {{"gait.hop", false}, {"gait.lead", 7}, {"gait.mode", "walk"}, {"gait.mood", 1}})["error"];
+  EXPECT_EQ(many["code"], -32602);
+  EXPECT_TRUE(
+      many["message"].get<std::string>().starts_with("3 errors:\n  gait.lead = 7 is out of"))
+      << many.dump();
+  ASSERT_EQ(many["data"]["errors"].size(), 3u) << many.dump();
+  const char* const blamed[] = {"gait.lead", "gait.mode", "gait.mood"};
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(many["data"]["errors"][i]["data"]["param"], blamed[i]);
+  EXPECT_EQ(many["data"]["errors"][1]["code"], -32602);
+  EXPECT_EQ(many["data"]["errors"][2]["code"], -32003);
+  Json thousand = Json::object();
+  for (int i = 0; i < 1000; ++i) thousand["x" + std::to_string(i)] = 1;
+  EXPECT_EQ(load(thousand)["error"]["data"]["errors"].size(), 50u);
   EXPECT_EQ(Changed(), Names{"gait.lead"});
   EXPECT_EQ(load({{"gait.hop", false}})["result"]["kept"], Json({{"gait.lead", 0.25}}));
   EXPECT_EQ(Changed(), (Names{"gait.hop", "gait.lead"}));

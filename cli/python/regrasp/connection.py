@@ -5,12 +5,12 @@ import socket
 
 
 class Error(RuntimeError):
-    """The daemon refused a request. `code` as in docs/protocol.md; `hint`, `param`, `allowed` where it gave them."""
+    """The daemon refused a request. `code` as in docs/protocol.md; `hint`, `param`, `allowed`, `errors` where it gave them."""
 
     def __init__(self, method, error):
         data = error.get("data") or {}
         self.method, self.code = method, error["code"]
-        self.hint, self.param, self.allowed = data.get("hint"), data.get("param"), data.get("allowed")
+        self.hint, self.param, self.allowed, self.errors = (data.get(key) for key in ("hint", "param", "allowed", "errors"))
         super().__init__(f"{method}: {error['message']}" + (f" (try: {self.hint})" if self.hint else ""))
 
 

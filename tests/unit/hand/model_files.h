@@ -106,14 +106,19 @@ class LoaderTest : public testing::Test {
   /// Loading must throw a ModelError that contains every one of `words`.
   void ExpectRefused(std::initializer_list<const char*> words, const std::string& hand = "mini",
                      const std::string& object = "") const {
+    const std::string said = Refusal(hand, object);
+    for (const char* word : words)
+      EXPECT_NE(said.find(word), std::string::npos) << word << " not in: " << said;
+  }
+  /// What loading is refused with.
+  std::string Refusal(const std::string& hand = "mini", const std::string& object = "") const {
     try {
       Load(hand, object);
-      FAIL() << "was not refused";
+      ADD_FAILURE() << "was not refused";
     } catch (const ModelError& error) {
-      for (const char* word : words)
-        EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
-            << word << " not in: " << error.what();
+      return error.what();
     }
+    return "";
   }
 
   fs::path root_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -144,6 +145,62 @@ TEST(EvaluateJson, NamesFieldAndValueOfBadFiles) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     }
   }
+}
+
+/// What EvaluateJson refuses this text with.
+std::string Refusal(const std::string& text) {
+  try {
+    EvaluateJson(text);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(EvaluateJson, NamesEverythingThatIsWrongAtOnce) {
+  json file = File(Tetrahedron(0.025, 0.5));
+  file["contacts"][0]["mu"] = -1;
+  file["contacts"][1]["normal"] = {0, 0, 2};
+  file["contacts"][1].erase("mu");
+  file["contacts"][2]["position_m"] = {0, nullptr, "x"};
+  file["contacts"][2]["torsional_mu"] = true;
+  file["contacts"][3] = 7;
+  file["cone_edge"] = 8;
+  file["weight_n"] = 1;
+  file["max_force_n"] = -2;
+  file["normals"] = "up";
+  EXPECT_EQ(Refusal(file.dump()), R"(11 errors:
+  cone_edge: unknown name; nearest: cone_edges
+  normals: "up"; allowed: "inward", "outward"
+  contacts[1].mu: missing
+  contacts[2].position_m[1]: null; allowed: a number
+  contacts[2].position_m[2]: "x"; allowed: a number
+  contacts[2].torsional_mu: true; allowed: a number
+  contacts[3]: 7; allowed: an object
+  weight_n: 1; allowed: an array of 3 numbers
+  contacts[0].mu: -1; allowed: 0 ... 10
+  contacts[1].normal[2]: 2; allowed: -1.001 ... 1.001
+  max_force_n: -2; allowed: above 0)");
+}
+
+TEST(EvaluateJson, NamesEverythingThatIsWrongWithContactsOfTheDaemon) {
+  EXPECT_EQ(Refusal(R"({"fingers": {"ring": {"in_contact": true, "role": "hold", "normal_W": 3},
+                                    "thumb": {"role": "hold"}},
+                        "object": {"p_WO_m": [0, 0]}, "friction": "high", "cone_edges": 2})"),
+            R"(6 errors:
+  object.p_WO_m: [0,0]; allowed: an array of 3 numbers
+  friction: "high"; allowed: a number
+  fingers.ring.p_WC_m: missing
+  fingers.ring.normal_W: 3; allowed: an array of 3 numbers
+  fingers.thumb.in_contact: missing
+  cone_edges: 2; allowed: 3 ... 1024)");
+}
+
+TEST(EvaluateJson, OfVeryManyMistakesNamesTheFirstAndCountsTheRest) {
+  const json file = {{"contacts", std::vector<int>(300, 7)}, {"torque_scale_m", 1}};
+  const std::string said = Refusal(file.dump());
+  EXPECT_EQ(std::ranges::count(said, '\n'), 51);
+  EXPECT_TRUE(said.ends_with("\n  contacts[49]: 7; allowed: an object\n  and 250 more")) << said;
 }
 
 TEST(EvaluateJson, RefusesTextThatIsNotStrictJson) {

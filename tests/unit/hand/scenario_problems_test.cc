@@ -1,0 +1,71 @@
+/// What is wrong with a scenario, all in one list.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/unit/hand/model_files.h"
+
+namespace regrasp {
+namespace {
+
+using Words = std::vector<std::string>;
+
+class ScenarioProblems : public LoaderTest {
+ protected:
+  void ExpectInOrder(const Words& words) const {
+    const std::string said = Refusal();
+    std::size_t at = 0;
+    for (const std::string& word : words) {
+      const std::size_t found = said.find(word, at);
+      ASSERT_NE(found, std::string::npos) << word << " not in its place in: " << said;
+      at = found + word.size();
+    }
+  }
+};
+
+TEST_F(ScenarioProblems, TellsAllMistakesOfAScenarioInTheOrderOfItsLines) {
+  const auto spoilt = [](Words edits) {
+    std::string text = kScenarioToml;
+    for (std::size_t i = 0; i < edits.size(); i += 2) text = Replaced(text, edits[i], edits[i + 1]);
+    return text;
+  };
+  // What stands after the fingers and needs the hand is told with what stands before.
+  Write("hands/mini.toml", spoilt({"object =", "objekt =", "-9.81", "\"g\"", "1e-4", "1",  //
+                                   "name = ", "lenght_m = 1\nname = ", "B = 20.5", "B = 400",
+                                   "A = 60", "A = 60\nC = 1"}));
+  ExpectInOrder({"7 errors:\n  ", "mini.toml:1: unknown key \"objekt\"; nearest is \"object\"",
+                 "mini.toml:1: key \"object\" is missing",
+                 "mini.toml:2: gravity_m_s2 must be a number",
+                 "mini.toml:3: armature_kg_m2 = 1; allowed 0 .. 0.1",
+                 "mini.toml:7: unknown key \"lenght_m\"; allowed are name, tip_link",
+                 "mini.toml:12: q_preshape_deg.B [deg] = 400; allowed -28.6529 .. 85.9487",
+                 "mini.toml:15: unknown key \"C\"; allowed are A, B"});
+  // The hand's file as well.
+  EditHand("effort=\"2\"", "effort=\"-2\"");
+  Write("hands/mini.toml", spoilt({"-9.81", "\"g\"", "B = 20.5", "B = 400"}));
+  ExpectInOrder({"3 errors:\n  ", "mini.toml:2: ", "mini.toml:11: ", "mini.urdf:13: ", "= -2"});
+  Write("hands/mini.urdf", kHandUrdf);
+  // No hand can be built: its file still tells what the postures may be, and nothing else is
+  // invented.
+  Write("hands/mini.toml",
+        spoilt({"tip_link = \"tip\"", "tip = \"tip\"", "B = 20.5", "B = 400", "B = 70", "D = 70"}));
+  ExpectInOrder({"4 errors:\n  ", "mini.toml:6: key \"tip_link\" is missing",
+                 "mini.toml:8: unknown key \"tip\"; allowed are name, tip_link",
+                 "mini.toml:11: q_preshape_deg.B [deg] = 400; allowed -28.6529 .. 85.9487",
+                 "mini.toml:14: unknown key \"D\"; allowed are A, B"});
+  Write("hands/mini.toml",
+        spoilt({"tip_link = \"tip\"", "tip_link = \"tap\"", "B = 20.5", "B = 400"}));
+  ExpectInOrder({"2 errors:\n  ", "mini.toml:11: q_preshape_deg.B",
+                 "mini.urdf: finger \"only\": there is no link \"tap\""});
+}
+
+TEST_F(ScenarioProblems, AMistakeByItselfIsToldInOneLine) {
+  EditScenario("1e-4", "1");
+  EXPECT_EQ(Refusal(),
+            (root_ / "hands/mini.toml").string() + ":3: armature_kg_m2 = 1; allowed 0 .. 0.1");
+}
+
+}  // namespace
+}  // namespace regrasp
