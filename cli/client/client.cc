@@ -63,16 +63,23 @@ sockaddr_un Address(const std::string& path) {
                  "regrasp doctor");
 }
 
-/// An error of the wire, with those that it is made of.
-CliError Refusal(const Json& error) {
+/// An error of the wire by itself.
+CliError OneRefusal(const Json& error) {
   const int code = error.value("code", 0);
   CliError refusal(ExitCodeFor(code), error.value("message", "refused without a reason"), "", code);
   if (!error.contains("data") || !error["data"].is_object()) return refusal;
   const Json& data = error["data"];
   refusal.hint = data.value("hint", "");
   refusal.rpc_param = data.value("param", "");
-  for (const Json& one : data.value("errors", Json::array()))
-    refusal.rpc_errors.push_back(Refusal(one));
+  return refusal;
+}
+
+/// With those that it is made of.
+CliError Refusal(const Json& error) {
+  CliError refusal = OneRefusal(error);
+  const Json data = error.value("data", Json());
+  if (!data.is_object() || !data.contains("errors")) return refusal;
+  for (const Json& one : data["errors"]) refusal.rpc_errors.push_back(OneRefusal(one));
   refusal.is_list = !refusal.rpc_errors.empty();
   return refusal;
 }
