@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "bench/children.h"
+#include "bench/noise_setting.h"
 #include "bench/settings.h"
 #include "bench/trial.h"
 #include "core/hand/scenario.h"
@@ -38,21 +39,8 @@ namespace {
 struct Setting {
   std::string name;
   std::vector<ParameterSetting> values;
-  std::vector<std::pair<std::string, double>> noise;  // levels that are not the preset's
+  std::vector<NoiseSetting> noise;  // on top of the preset
   Stepper stepper = Stepper::kFast;
-};
-
-/// Sets the level with one name.
-struct SetLevel {
-  std::string_view name;
-  double value;
-  bool found = false;
-  template <typename T>
-  void operator()(const char* field, T& level) {
-    if (name != field) return;
-    level = static_cast<T>(value);
-    found = true;
-  }
 };
 
 struct Options {
@@ -81,19 +69,15 @@ Setting ParseSetting(const std::string& text) {
   Setting setting{text.substr(0, colon), {}, {}};
   std::istringstream words(colon == std::string::npos ? "" : text.substr(colon + 1));
   for (std::string word; words >> word;) {
-    const auto equals = word.find('=');
-    if (word.starts_with("noise.") && equals != std::string::npos) {
-      setting.noise.emplace_back(word.substr(6, equals - 6), std::stod(word.substr(equals + 1)));
-      SetLevel level{setting.noise.back().first, 0};
-      NoiseLevels().Fields(level);
-      if (!level.found) throw std::invalid_argument("zoo: " + word + ": no level of the noise");
+    if (word.starts_with("noise.")) {
+      setting.noise.push_back(ReadNoiseSetting(word));
       continue;
     }
     if (!word.starts_with("stepper=")) {
       setting.values.push_back(ReadSetting(word));
       continue;
     }
-    const auto stepper = StepperNamed(word.substr(equals + 1));
+    const auto stepper = StepperNamed(word.substr(word.find('=') + 1));
     if (!stepper) throw std::invalid_argument("zoo: " + word + ": fast, exact or round");
     setting.stepper = *stepper;
   }
@@ -106,10 +90,7 @@ SessionConfig MakeConfig(const Options& o, const std::string& object, const Sett
   config.model = LoadScenario(o.hand, object, ModelSearchPath());
   config.parameters = DefaultParameters(config.model);
   config.noise = NoisePreset(o.noise).value();
-  for (const auto& [name, value] : setting.noise) {
-    SetLevel level{name, value};
-    config.noise.Fields(level);
-  }
+  for (const NoiseSetting& level : setting.noise) Apply(level, &config.noise);
   config.seed = seed;
   config.world.stepper = setting.stepper;
   if (o.tilt >= 0) {

@@ -14,8 +14,9 @@ namespace regrasp::cli {
 namespace {
 
 constexpr std::int64_t kSampleTicks = 50;  // 0.75 mm at 15 mm/s
-// Of the time that the straight way to the excursion bound takes: a wall is slid along, slowly.
-constexpr double kTimeShare = 4;
+// Of the time that the straight way to the excursion bound takes: a wall is slid along, slowly, and
+// a finger on the side of its link slides onto the round tip first.
+constexpr double kTimeShare = 6;
 // A contact that moved less than this in so many samples has arrived, at the bound or in a corner.
 constexpr double kStill_m = 4e-4;
 constexpr std::size_t kStillSamples = 6;

@@ -32,7 +32,8 @@ int GuidedSlide::MaxCycles(const ExplorationParameters& parameters) const {
 
 bool GuidedSlide::TryAgain(const SlideProfile& profile,
                            const ExplorationParameters& parameters) const {
-  return tries_ + 1 < profile.tries && best_.phi() < parameters.little_gain * phi_initial_ &&
+  return end_ != End::kOnSide && tries_ + 1 < profile.tries &&
+         best_.phi() < parameters.little_gain * phi_initial_ &&
          2 * cycles() < MaxCycles(parameters);
 }
 
@@ -153,7 +154,9 @@ void GuidedSlide::Slide(const ControlTick& tick, const SlideProfile& profile,
   }
   if (MustEnd(tick, controller->wrench())) return;
 
-  if (excess_ < tick.exploration.disc_slack && phase_ != Phase::kReturn)
+  if (std::ranges::any_of(input.walls, &Wall::blind)) {
+    best_.Start(input.p_WC, phi_);  // it cannot come back onto the side of its link
+  } else if (excess_ < tick.exploration.disc_slack && phase_ != Phase::kReturn)
     best_.Add(input.p_WC, phi_, tick.exploration.best_filter_s, tick.dt);
   if (phase_ == Phase::kExplore) {
     Explore(tick, profile, input, task);
@@ -202,7 +205,9 @@ void GuidedSlide::Explore(const ControlTick& tick, const SlideProfile& profile,
       task->v_W = patience_ * algorithm_.velocity_W();
       return;
     }
-    end_ = status == Status::kConverged ? End::kGradient : End::kMaxCycles;
+    end_ = status == Status::kConverged ? End::kGradient
+           : status == Status::kBlind   ? End::kOnSide
+                                        : End::kMaxCycles;
   }
   const bool back = request_.estimator == Estimator::kLeastSquares &&
                     (best_.worth_returning(tick.exploration.worth_returning) ||

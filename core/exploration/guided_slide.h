@@ -68,6 +68,7 @@ class GuidedSlide {
     kTime,  ///< SlideProfile::explore_s
     kContactLost,
     kObjectMoved,  ///< the others could not carry what the finger dragged
+    kOnSide,       ///< of its link: it could not slide onto its round tip
   };
   struct Request {
     int finger = -1;
@@ -136,7 +137,7 @@ class GuidedSlide {
     v("slide_began", slide_began_);
     v("slide_ended", slide_ended_);
     v("on_stability", on_stability_);
-    v("end", end_, End::kObjectMoved);
+    v("end", end_, End::kOnSide);
     v("slide_force", slide_force_);
     v("cap_start", cap_start_);
     v("patience", patience_);

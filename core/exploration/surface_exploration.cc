@@ -67,8 +67,8 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
                                                       const ExplorationParameters& parameters,
                                                       double dt) {
   if (++cycle_ > max_cycles_) return Status::kMaxCycles;  // line 3
-  if (parameters.onto_tip_s > 0 && LeaveBlind(input, parameters))
-    return blind_cycles_ * dt < parameters.onto_tip_s ? Status::kRunning : Status::kConverged;
+  if (LeaveBlind(input, parameters))
+    return blind_cycles_ * dt < parameters.onto_tip_s ? Status::kRunning : Status::kBlind;
   const Matrix3d R_WC = RotationFromZ(input.normal_W);
   const int n = std::max(1, parameters.update_cycles);
   const bool least_squares = estimator_ == Estimator::kLeastSquares;

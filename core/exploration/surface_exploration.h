@@ -27,6 +27,14 @@
 ///    and from the test: a constrained maximum counts as converged.
 ///    Where the finger starts beyond a wall that it may stay at, the wall stands where it started.
 ///  - line 4: behind a blind wall no gradient is felt, and the finger leaves it whatever phi does;
+///    where that takes longer than `onto_tip_s` at a time the search ends.
+///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
+///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit
+///  and at
+///    another finger (walls) the part of the gradient that points on is removed, from the motion
+///    and from the test: a constrained maximum counts as converged.
+///    Where the finger starts beyond a wall that it may stay at, the wall stands where it started.
+///  - line 4: behind a blind wall no gradient is felt, and the finger leaves it whatever phi does;
 ///  where
 ///    that takes longer than `onto_tip_s` the search ends.
 ///  - line 11: the displacement is per second, limited to [speed_min, speed_max].
@@ -65,7 +73,12 @@ using Walls = FixedVector<Wall, kMaxWalls>;
 
 class SurfaceExploration {
  public:
-  enum class Status : std::uint8_t { kRunning, kConverged, kMaxCycles };
+  enum class Status : std::uint8_t {
+    kRunning,
+    kConverged,
+    kMaxCycles,
+    kBlind,  ///< could not leave a blind wall
+  };
 
   /// What line 5 to 11 need, every tick.
   struct Input {

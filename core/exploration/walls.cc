@@ -57,15 +57,17 @@ Closest BetweenSegments(const Capsule& one, const Capsule& two) {
   return {one.a + s * d1, two.a + t * d2};
 }
 
-/// `direction`: of contact motion, any length; `depth` [m] along it; `wall`: what else it is.
-void AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
+/// `direction`: of contact motion, any length; `depth` [m] along it; `wall`: what else it is. False
+/// where the direction is not along the surface.
+bool AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
              Wall wall = {}) {
   const Vector3d tangent = TangentPart(direction, normal);
   const double share = tangent.norm() / direction.norm();
-  if (!(share > kLeastShare)) return;
+  if (!(share > kLeastShare)) return false;
   wall.direction_W = tangent.normalized();
   wall.depth = depth / share;
   walls->push_back(wall);
+  return true;
 }
 
 /// One finger among the others.
@@ -101,7 +103,8 @@ void AddJointLimits(const Explorer& e, Walls* walls) {
 /// On the side of the link the contact does not follow the tip: a link that slides along itself
 /// only changes `up`, how far from the tip's centre it touches. With the object at rest up = (p_F -
 /// p_O) . d; its rate with the contact velocity v is v_F . d + (p_F - p_O) . (w x d).
-void AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up, Walls* walls) {
+/// False where the finger cannot move so.
+bool AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up, Walls* walls) {
   const Vector3d& n = e.finger.normal_W;
   const Vector3d arm = own.b - (e.finger.p_WC - e.estimate.object_scale * n);
   const KinematicsData& links = e.estimate.kinematics;
@@ -113,8 +116,8 @@ void AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up
              AngularRate(e.hand, links, joint, tip).cross(d).dot(arm)) *
             e.JointRate(k);
   }
-  if (rate.norm() > kLeastRate)
-    AddWall(rate, up / rate.norm(), n, walls, {.must_leave = true, .blind = true});
+  return rate.norm() > kLeastRate &&
+         AddWall(rate, up / rate.norm(), n, walls, {.must_leave = true, .blind = true});
 }
 
 /// The contact must stay on the round end. facing = d . n is negative there (d: along the link, n:
@@ -128,10 +131,7 @@ void AddTipSide(const Explorer& e, Walls* walls) {
   const Vector3d& n = e.finger.normal_W;
   const double facing = d.dot(n), up = (own.b - e.finger.p_WC).dot(d);
   if (facing <= e.parameters.least_facing) return;
-  if (up > kOnSide) {
-    AddSide(e, own, d, up, walls);
-    return;
-  }
+  if (e.parameters.onto_tip_s > 0 && up > kOnSide && AddSide(e, own, d, up, walls)) return;
   Vector3d rate = d / (e.estimate.object_scale + own.radius);
   for (std::size_t k = 0; k < e.model.joints.size(); ++k)
     rate += AngularRate(e.hand, e.estimate.kinematics, e.model.joints[k], e.model.tip_link)

@@ -20,6 +20,7 @@ enum class ExploreReason : std::uint8_t {
   kDropped,
   kCancelled,
   kObjectMoved,  ///< the other fingers could not carry what the finger dragged
+  kOnSide,       ///< the finger could not slide from the side of its link onto the round tip
 };
 
 /// Why a move ended.
@@ -58,7 +59,7 @@ struct ExploreResult {
     v("criterion", criterion, kLastCriterion);
     v("estimator", estimator, Estimator::kLeastSquares);
     v("converged", converged);
-    v("reason", reason, ExploreReason::kObjectMoved);
+    v("reason", reason, ExploreReason::kOnSide);
     v("cycles", cycles);
     v("phi_initial", phi_initial);
     v("phi_final", phi_final);

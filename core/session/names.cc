@@ -36,6 +36,8 @@ std::string_view Name(ExploreReason reason) {
       return "max_cycles";
     case ExploreReason::kObjectMoved:
       return "object_moved";
+    case ExploreReason::kOnSide:
+      return "on_side";
     case ExploreReason::kContactLost:
       return "contact_lost";
     case ExploreReason::kDropped:

@@ -84,7 +84,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("exploration.gradient_max", "1/m", 1, 1000, "Line 7: cap of the gradient norm.", kMeasured, [](P& p) { return &p.exploration.gradient_max; }),
   Row("exploration.clearance", "m", 0, 0.02, "An exploring finger goes no nearer to a link of another finger.", kOurs, [](P& p) { return &p.exploration.clearance; }),
   Row("exploration.least_facing", "", -1, 1, "An exploring finger keeps its link axis times the outward normal below this, so that the contact stays on the round tip; 1 turns this off.", kMeasured, [](P& p) { return &p.exploration.least_facing; }),
-  Row("exploration.onto_tip_s", "s", 0, 10, "A finger that stands on the side of its last link first slides onto the round tip, for at most so long: on the side its contact does not follow it, so that no gradient is felt. Where that takes longer the search ends. 0 turns this off.", kMeasured, [](P& p) { return &p.exploration.onto_tip_s; }),
+  Row("exploration.onto_tip_s", "s", 0, 10, "A finger that explores on the side of its last link slides onto the round tip, for at most so long at a time: on the side its contact does not follow it, so that no gradient is felt. Where that takes longer the search ends. 0 explores on the side.", kMeasured, [](P& p) { return &p.exploration.onto_tip_s; }),
   Row("exploration.limit_margin", "rad", 0, 0.5, "An exploring finger goes no nearer to a joint limit.", kOurs, [](P& p) { return &p.exploration.limit_margin; }),
   Row("exploration.lambda", "", 0, 0.999, "Line 8: weight of the past in the sliding mean.", kPaper, [](P& p) { return &p.exploration.lambda; }),
   Row("exploration.max_cycles", "ticks", 1, 1e6, "Line 3: N_max.", kMeasured, [](P& p) { return &p.exploration.max_cycles; }),

@@ -15,6 +15,8 @@ ExploreReason ReasonOf(FingerExploration::End end) {
       return ExploreReason::kMaxCycles;
     case FingerExploration::End::kObjectMoved:
       return ExploreReason::kObjectMoved;
+    case FingerExploration::End::kOnSide:
+      return ExploreReason::kOnSide;
     case FingerExploration::End::kContactLost:
       return ExploreReason::kContactLost;
     case FingerExploration::End::kTime:

@@ -222,9 +222,9 @@ TEST_F(WallsTest, TheSideOfTheLinkIsABlindWallWithTheRoundTipBehindIt) {
     ASSERT_NEAR(Up(), kUp, 1e-9);
     Walls walls;
     FindWalls(hand_, e, finger, parameters, &walls);
-    if (walls.empty()) continue;  // it cannot move along its link
     ASSERT_EQ(walls.size(), 1u);
-    EXPECT_TRUE(walls[0].blind && walls[0].must_leave);
+    if (!walls[0].blind) continue;  // it cannot move along its link
+    EXPECT_TRUE(walls[0].must_leave);
     const FingerVector dq =
         f.J.completeOrthogonalDecomposition().solve(-kStep * walls[0].direction_W);
     for (std::size_t k = 0; k < model.joints.size(); ++k)
@@ -235,6 +235,11 @@ TEST_F(WallsTest, TheSideOfTheLinkIsABlindWallWithTheRoundTipBehindIt) {
     ++seen;
     f.p_WC += (kUp - 3e-4) * Along();  // as good as on the round end
     FindWalls(hand_, e, finger, parameters, &walls);
+    for (const Wall& wall : walls) EXPECT_FALSE(wall.blind);
+    f.p_WC -= (kUp - 3e-4) * Along();
+    ExplorationParameters off = parameters;
+    off.onto_tip_s = 0;
+    FindWalls(hand_, e, finger, off, &walls);
     for (const Wall& wall : walls) EXPECT_FALSE(wall.blind);
   }
   EXPECT_GE(seen, 3);

@@ -113,8 +113,8 @@ TEST(SurfaceExploration, ABlindWallIsLeftFirstWhateverPhiDoes) {
       status = algorithm.Update(input, parameters, kDt);
       if (!input.walls.empty()) {
         const double speed = -algorithm.velocity_W().dot(input.walls[0].direction_W);
-        EXPECT_GE(speed, parameters.speed_min) << "seed " << seed;
-        EXPECT_LE(speed, parameters.speed_max) << "seed " << seed;
+        EXPECT_GE(speed, parameters.speed_min - 1e-9) << "seed " << seed;
+        EXPECT_LE(speed, parameters.speed_max + 1e-9) << "seed " << seed;
       }
       finger.Move(algorithm.velocity_W());
     }
@@ -124,29 +124,23 @@ TEST(SurfaceExploration, ABlindWallIsLeftFirstWhateverPhiDoes) {
   }
 }
 
-// Where something stands in the way out the search ends once the time is up; with none it goes on.
+// Where something stands in the way out the search ends once the time is up.
 TEST(SurfaceExploration, LeavingABlindWallTakesItsTimeAndNoMore) {
   ExplorationParameters parameters = SlowClimb();
-  for (const double allowed_s : {0.0, 0.5}) {
-    parameters.onto_tip_s = allowed_s;
-    RandomStream random(6, 0);
-    Follower finger{StartAt(6e-3, &random)};
-    const Vector3d start = finger.p;
-    SurfaceExploration algorithm;
-    const Status status = Explore(&algorithm, &finger, Estimator::kLeastSquares, 1, 2000,
-                                  parameters, [](SurfaceExploration::Input* input) {
-                                    const Vector3d x = RotationFromZ(input->normal_W).col(0);
-                                    input->walls.push_back({x, 1e-3, true, true});
-                                    input->walls.push_back({-x, 0});
-                                  });
-    if (allowed_s == 0) {
-      EXPECT_GT((finger.p - start).norm(), 1e-4);
-      continue;
-    }
-    EXPECT_EQ(status, Status::kConverged);
-    EXPECT_NEAR(algorithm.cycle() * kDt, allowed_s, 2 * kDt);
-    EXPECT_LT((finger.p - start).norm(), 1e-9);
-  }
+  parameters.onto_tip_s = 0.5;
+  RandomStream random(6, 0);
+  Follower finger{StartAt(6e-3, &random)};
+  const Vector3d start = finger.p;
+  SurfaceExploration algorithm;
+  const Status status = Explore(&algorithm, &finger, Estimator::kLeastSquares, 1, 2000, parameters,
+                                [](SurfaceExploration::Input* input) {
+                                  const Vector3d x = RotationFromZ(input->normal_W).col(0);
+                                  input->walls.push_back({x, 1e-3, true, true});
+                                  input->walls.push_back({-x, 0});
+                                });
+  EXPECT_EQ(status, Status::kBlind);
+  EXPECT_NEAR(algorithm.cycle() * kDt, parameters.onto_tip_s, 2 * kDt);
+  EXPECT_LT((finger.p - start).norm(), 1e-9);
 }
 
 }  // namespace
