@@ -156,8 +156,9 @@ void GuidedSlide::Slide(const ControlTick& tick, const SlideProfile& profile,
 
   if (std::ranges::any_of(input.walls, &Wall::blind)) {
     best_.Start(input.p_WC, phi_);  // it cannot come back onto the side of its link
-  } else if (excess_ < tick.exploration.disc_slack && phase_ != Phase::kReturn)
+  } else if (excess_ < tick.exploration.disc_slack && phase_ != Phase::kReturn) {
     best_.Add(input.p_WC, phi_, tick.exploration.best_filter_s, tick.dt);
+  }
   if (phase_ == Phase::kExplore) {
     Explore(tick, profile, input, task);
   } else if (phase_ == Phase::kRecall) {

@@ -17,26 +17,15 @@
 ///  - line 2: the start is tangential, sigma scaled by gradient_max so that it is of phi's own
 ///    magnitude. The gait starts from the gradient of the finger's last exploration (StartFrom).
 ///  - line 3: the test must hold for `converged_updates` consecutive updates; an instantaneous one
-///  ends
-///    runs whose estimate merely crosses zero.
+///    ends runs whose estimate merely crosses zero.
 ///  - line 4: an update also waits until the contact has moved by `min_displacement`.
-///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
-///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit
-///  and at
-///    another finger (walls) the part of the gradient that points on is removed, from the motion
-///    and from the test: a constrained maximum counts as converged.
-///    Where the finger starts beyond a wall that it may stay at, the wall stands where it started.
 ///  - line 4: behind a blind wall no gradient is felt, and the finger leaves it whatever phi does;
 ///    where that takes longer than `onto_tip_s` at a time the search ends.
 ///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
 ///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit
-///  and at
-///    another finger (walls) the part of the gradient that points on is removed, from the motion
-///    and from the test: a constrained maximum counts as converged.
-///    Where the finger starts beyond a wall that it may stay at, the wall stands where it started.
-///  - line 4: behind a blind wall no gradient is felt, and the finger leaves it whatever phi does;
-///  where
-///    that takes longer than `onto_tip_s` the search ends.
+///    and at another finger (walls) the part of the gradient that points on is removed, from the
+///    motion and from the test: a constrained maximum counts as converged. Where the finger
+///    starts beyond a wall that it may stay at, the wall stands where it started.
 ///  - line 11: the displacement is per second, limited to [speed_min, speed_max].
 /// The class knows nothing of the hand: it turns contact points and values of phi into velocities.
 

@@ -101,8 +101,8 @@ void AddJointLimits(const Explorer& e, Walls* walls) {
 }
 
 /// On the side of the link the contact does not follow the tip: a link that slides along itself
-/// only changes `up`, how far from the tip's centre it touches. With the object at rest up = (p_F -
-/// p_O) . d; its rate with the contact velocity v is v_F . d + (p_F - p_O) . (w x d).
+/// only changes `up`, how far from the tip's centre it touches. With the object at rest
+///   up = (p_F - p_O) . d,   d up / d v = v_F . d + (p_F - p_O) . (w x d)   per contact velocity v.
 /// False where the finger cannot move so.
 bool AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up, Walls* walls) {
   const Vector3d& n = e.finger.normal_W;
@@ -121,8 +121,8 @@ bool AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up
 }
 
 /// The contact must stay on the round end. facing = d . n is negative there (d: along the link, n:
-/// outward normal); its rate of change with the contact velocity v is (w x d) . n + d . v / (R +
-/// r), with w the link's angular velocity.
+/// outward normal); its rate of change with the contact velocity v is
+///   (w x d) . n + d . v / (R + r),   with w the link's angular velocity.
 void AddTipSide(const Explorer& e, Walls* walls) {
   Capsule own;
   if (!CapsuleOf(e.hand, e.estimate, e.model.tip_link, &own) || (own.b - own.a).norm() <= 1e-6)
