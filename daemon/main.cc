@@ -62,10 +62,15 @@ void StartLog(const DaemonConfig& config) {
   spdlog::set_default_logger(std::move(logger));
 }
 
-int Fail(const std::string& cause, const std::string& next, ExitCode code) {
-  fmt::print(stderr, "regraspd: {}\n", ShownLines(cause));
+/// `cause`: a line or lines that may be shown as they are (ProblemList::Text).
+int FailShown(const std::string& cause, const std::string& next, ExitCode code) {
+  fmt::print(stderr, "regraspd: {}\n", cause);
   if (!next.empty()) fmt::print(stderr, "try: {}\n", next);
   return static_cast<int>(code);
+}
+
+int Fail(const std::string& cause, const std::string& next, ExitCode code) {
+  return FailShown(ShownText(cause), next, code);
 }
 
 /// Puts the answer on standard output, to its last byte.
@@ -176,8 +181,9 @@ int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
   RaiseDescriptorLimit(config.max_clients);
   MemoryReserve::Install(kMemoryReserve);
   Daemon daemon(config);
-  spdlog::info("regraspd {} listens on {}, configuration {}", Version(), daemon.socket_path(),
-               config.file.empty() ? "built in" : config.file);
+  spdlog::info("regraspd {} listens on {}, configuration {}", Version(),
+               ShownText(daemon.socket_path()),
+               config.file.empty() ? "built in" : ShownText(config.file));
   daemon.Run(true, source);
   spdlog::info("stopped");
   return static_cast<int>(ExitCode::kOk);
@@ -216,9 +222,9 @@ int Main(int argc, char** argv) {
       fmt::print(stderr, "regraspd: warning: {}\n", warning);
     return Print("configuration ok\n");
   } catch (const ConfigError& e) {
-    return Fail(e.what(), "regraspd --print-default-config", ExitCode::kUsage);
+    return FailShown(e.what(), "regraspd --print-default-config", ExitCode::kUsage);
   } catch (const ModelError& e) {
-    return Fail(e.what(), "regraspd --check-config", ExitCode::kNotFound);
+    return FailShown(e.what(), "regraspd --check-config", ExitCode::kNotFound);
   } catch (const SocketError& e) {
     const bool busy = e.exit_code() == ExitCode::kRefused;
     return Fail(e.what(), busy ? "regrasp status" : "regraspd --socket PATH", e.exit_code());

@@ -80,6 +80,7 @@ CliError Refusal(const Json& error) {
   const Json data = error.value("data", Json());
   if (!data.is_object() || !data.contains("errors")) return refusal;
   for (const Json& one : data["errors"]) refusal.rpc_errors.push_back(OneRefusal(one));
+  refusal.rpc_more = data.value("more", std::size_t{0});
   refusal.is_list = !refusal.rpc_errors.empty();
   return refusal;
 }

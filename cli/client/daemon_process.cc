@@ -20,6 +20,7 @@
 #include "cli/client/client.h"
 #include "cli/client/errors.h"
 #include "cli/client/program.h"
+#include "core/files/problem_list.h"
 
 namespace regrasp::cli {
 namespace {
@@ -42,16 +43,26 @@ std::string Tail(const std::string& written, std::size_t count) {
   return text;
 }
 
-/// The error that a `regraspd` wrote before it ended, of a list every line, without its name and
-/// the next command; "" where it wrote none.
+/// The error that a `regraspd` wrote before it ended, without its name: a line, or a list as
+/// ProblemList::Text() makes it; "" where it wrote none.
 std::string DaemonError(const std::string& written) {
   constexpr std::string_view kName = "regraspd: ";
   const std::string text = "\n" + written;
   std::size_t begin = text.rfind("\n" + std::string(kName));
   if (begin == std::string::npos) return "";
   begin += 1 + kName.size();
-  const std::size_t end = std::min(text.find("\ntry: ", begin), text.find_last_not_of('\n') + 1);
+  std::size_t end = std::min(text.find('\n', begin), text.size());
+  if (std::string_view(text).substr(0, end).ends_with(" errors:"))
+    for (std::size_t i = 0; i <= ProblemList::kMost && text.compare(end, 3, "\n  ") == 0; ++i)
+      end = std::min(text.find('\n', end + 1), text.size());
   return text.substr(begin, end - begin);
+}
+
+/// What a `regraspd` ended with, where main.cc of it has that from the contract.
+ExitCode ExitCodeOf(int code) {
+  for (const ExitCode known : {kUsage, kRefused, kNotFound, kIo, kPermission})
+    if (code == static_cast<int>(known)) return known;
+  return kFailed;
 }
 
 /// This program's environment, without what `surroundings` keeps from the daemon.
@@ -121,8 +132,7 @@ std::string AskDaemonProgram(std::vector<std::string> words, const std::string& 
   if (finished.code == 0) return finished.out;
   std::string cause = DaemonError(finished.err);
   if (cause.empty()) cause = finished.err.substr(0, finished.err.find('\n'));
-  const bool known = finished.code == 2 || finished.code == 6 || finished.code == 77;
-  throw CliError::List(known ? static_cast<ExitCode>(finished.code) : kFailed, cause, next);
+  throw CliError::List(ExitCodeOf(finished.code), cause, next);
 }
 
 StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
@@ -168,9 +178,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
         std::ifstream log(started.log);
         const std::string written{std::istreambuf_iterator<char>(log), {}};
         const std::string cause = DaemonError(written), last = Tail(written, 3);
-        const auto exit_code = code == 2 || code == 5 || code == 6 || code == 74 || code == 77
-                                   ? static_cast<ExitCode>(code)
-                                   : kFailed;
+        const ExitCode exit_code = ExitCodeOf(code);
         const std::string next = "regraspd --help, or cat " + started.log;
         if (cause.find('\n') != std::string::npos)
           throw CliError::List(exit_code, "regraspd: " + cause, next);

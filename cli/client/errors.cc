@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/files/json_text.h"
 #include "core/files/names.h"
@@ -11,6 +12,19 @@
 namespace regrasp::cli {
 
 std::string JsonQuote(const std::string& text) { return JsonText(nlohmann::json(text)); }
+
+namespace {
+
+/// The lines of a list, each by itself; none of an error that is a single one.
+std::vector<std::string> Each(const CliError& error) {
+  std::vector<std::string> lines;
+  std::istringstream text(error.is_list ? error.what() : "");
+  for (std::string line; std::getline(text, line);)
+    if (line.starts_with("  ")) lines.push_back(line.substr(2));
+  return lines;
+}
+
+}  // namespace
 
 void PrintError(const CliError& error, bool json, bool color) {
   std::string text;
@@ -21,6 +35,9 @@ void PrintError(const CliError& error, bool json, bool color) {
     if (error.rpc_code != 0) {
       text.insert(text.size() - 2, fmt::format(R"(,"code":{})", error.rpc_code));
     }
+    const std::vector<std::string> errors = Each(error);
+    if (!errors.empty())
+      text.insert(text.size() - 2, ",\"errors\":" + JsonText(nlohmann::json(errors)));
     text += '\n';
   } else {
     text = fmt::format("{}regrasp:{} {}\n", color ? "\x1b[31m" : "", color ? "\x1b[0m" : "",

@@ -36,11 +36,12 @@ class CliError : public std::runtime_error {
   int rpc_code;                           ///< JSON-RPC error code when the daemon refused, else 0
   std::string rpc_param;                  ///< the parameter it blames, or ""
   std::vector<CliError> rpc_errors = {};  ///< where several are at fault, each by itself
+  std::size_t rpc_more = 0;               ///< so many more were not told one by one
   bool is_list = false;  ///< the lines of what() are shown as lines, else the whole as one
 };
 
 /// Writes `error` to stderr: two lines of text (of a list more), or with `json` one object
-/// {"error": {…}}.
+/// {"error": {…}}, of a list with each by itself in `errors`.
 void PrintError(const CliError& error, bool json, bool color);
 
 /// `text` as a JSON string literal, quotes included. Invalid UTF-8 bytes become U+FFFD.

@@ -230,14 +230,16 @@ CliError Placed(const CliError& error, const std::string& file, const ParameterF
     const auto line = read.lines.find(one.rpc_param);
     return line == read.lines.end() ? 0 : static_cast<int>(line->second);
   };
-  const auto placed = [&](const CliError& one) {
-    const int line = line_of(one);
-    return line == 0 ? one.what() : fmt::format("{}:{}: {}", file, line, one.what());
+  const auto placed = [&](const CliError& one) -> std::string {
+    if (one.rpc_param.empty()) return one.what();
+    const int line = line_of(one);  // 0: the daemon does not repeat names of any length
+    return fmt::format("{}{}: {}", file, line == 0 ? "" : fmt::format(":{}", line), one.what());
   };
   if (error.rpc_errors.empty()) return error.With(placed(error), error.hint);
   ProblemList problems;
   for (const CliError& one : error.rpc_errors)
     problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
+  problems.AddUnkept(error.rpc_more);
   return error.With(problems.Text(), "regrasp param list");
 }
 

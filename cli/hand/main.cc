@@ -31,11 +31,12 @@ double Options::Number(const std::string& flag, double otherwise, double min, do
 
 namespace {
 
-void TellFailure(const Options& options, const std::string& cause, const std::string& next) {
-  if (options.Has("--json"))
-    fmt::print(stderr, "{}\n", JsonText(Json{{"error", {{"message", cause}, {"hint", next}}}}));
-  else
-    fmt::print(stderr, "regrasp: {}\n  try: {}\n", cause, next);
+void TellFailure(const Options& options, const std::string& cause, const std::string& next,
+                 const std::vector<std::string>& errors = {}) {
+  if (!options.Has("--json")) return fmt::print(stderr, "regrasp: {}\n  try: {}\n", cause, next);
+  Json error = {{"message", cause}, {"hint", next}};
+  if (errors.size() > 1) error["errors"] = errors;
+  fmt::print(stderr, "{}\n", JsonText(Json{{"error", error}}));
 }
 
 bool NamesNoFile(const std::string& cause) {
@@ -82,14 +83,14 @@ int Main(int argc, char** argv) {
                     "regrasp doctor");
     return static_cast<int>(answer.code);
   } catch (const Failure& failure) {
-    TellFailure(options, failure.what(), failure.next);
+    TellFailure(options, ShownText(failure.what()), failure.next);
     return static_cast<int>(failure.code);
   } catch (const ModelError& error) {
     const std::string cause = error.what();
-    TellFailure(options, cause, NextFor(cause));
+    TellFailure(options, cause, NextFor(cause), error.problems.Messages());
     return static_cast<int>(NamesNoFile(cause) ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& error) {
-    TellFailure(options, error.what(), "regrasp help hand " + options.verb);
+    TellFailure(options, ShownText(error.what()), "regrasp help hand " + options.verb);
     return static_cast<int>(ExitCode::kIo);
   }
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/files/json_text.h"
+#include "core/files/names.h"
 #include "core/hand/model_path.h"
 #include "core/hand/object_loader.h"
 #include "core/hand/solid.h"
@@ -228,7 +229,7 @@ int Main(int argc, char** argv) {
                          std::string_view(e.what()).starts_with("there is no model");
     return Fail(given, e.what(), missing ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& e) {
-    return Fail(given, e.what(), ExitCode::kIo);
+    return Fail(given, ShownText(e.what()), ExitCode::kIo);
   }
 }
 

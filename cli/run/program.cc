@@ -11,6 +11,7 @@
 
 #include "cli/client/errors.h"
 #include "core/files/names.h"
+#include "core/hand/model_error.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
 
@@ -25,9 +26,9 @@ void TellOnce(const std::vector<std::string>& differences, Json* told) {
   }
 }
 
-int TellFailure(const Command& command, const std::string& cause, const std::string& next,
+/// `message`, `hint`: as they may be shown.
+int TellFailure(const Command& command, const std::string& message, const std::string& hint,
                 ExitCode code) {
-  const std::string message = ShownLines(cause), hint = ShownLines(next);
   if (command.json())
     fmt::print(stderr, "{}\n",
                Json{{"error",
@@ -111,9 +112,11 @@ int RunVerb(int argc, char** argv,
                command.verb);
     return static_cast<int>(ExitCode::kUsage);
   } catch (const cli::CliError& e) {
-    return TellFailure(command, e.what(), e.hint, e.code);
-  } catch (const std::exception& e) {
+    return TellFailure(command, ShownText(e.what()), ShownText(e.hint), e.code);
+  } catch (const ModelError& e) {
     return TellFailure(command, e.what(), "regrasp record list", ExitCode::kIo);
+  } catch (const std::exception& e) {
+    return TellFailure(command, ShownText(e.what()), "regrasp record list", ExitCode::kIo);
   }
 }
 

@@ -10,9 +10,7 @@ void Problems::AddText(int line, const std::string& message) {
                            : fmt::format("{}: {}", file_, message));
 }
 
-void Problems::Add(const ModelError& error) {
-  for (const std::string& message : error.messages) list_.Add(message);
-}
+void Problems::Add(const ModelError& error) { list_.Add(error.problems); }
 
 void Problems::Warn(int line, std::string element, std::string text) {
   if (report_) report_->warnings.push_back({file_, line, std::move(element), std::move(text)});

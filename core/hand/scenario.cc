@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -121,33 +122,40 @@ JointVector ReadPosture(const TomlFile& file, const char* key, const HandModel& 
   return q;
 }
 
-/// The same where no hand could be built: as far as its URDF tells.
-void CheckPosture(const TomlFile& file, const char* key, const UrdfFile& urdf) {
+/// The same where no hand could be built: as far as its URDF tells, if it can be read.
+void CheckPosture(const TomlFile& file, const char* key, const std::optional<UrdfFile>& urdf) {
   const toml::table& table = file.Table(file.root(), key);
-  std::vector<std::string> names;
-  for (const UrdfJoint& joint : urdf.joints) {
-    names.push_back(joint.name);
-    const toml::node* node = table.get(joint.name);
-    if (node == nullptr) continue;
-    const bool limited = joint.type == UrdfJoint::Type::kRevolute && joint.lower < joint.upper;
-    ReadAngle(file, *node, key, joint.name, limited ? joint.lower : -2 * M_PI,
-              limited ? joint.upper : 2 * M_PI);
+  for (const auto& [name, node] : table) {
+    double lower = -2 * M_PI, upper = 2 * M_PI;
+    if (urdf) {
+      const auto joint = std::ranges::find(urdf->joints, name.str(), &UrdfJoint::name);
+      if (joint == urdf->joints.end()) continue;
+      if (joint->type == UrdfJoint::Type::kRevolute && joint->lower < joint->upper)
+        lower = joint->lower, upper = joint->upper;
+    }
+    ReadAngle(file, node, key, std::string(name.str().substr(0, 64)), lower, upper);
   }
+  if (!urdf) return;
+  std::vector<std::string> names;
+  for (const UrdfJoint& joint : urdf->joints) names.push_back(joint.name);
   file.CheckKeys(table, names);
 }
 
 /// Throws the problems of a scenario with those of its hand. `refused`: why the hand could not be
-/// built; null where that follows from the scenario.
-void RefuseWithoutHand(const TomlFile& file, const fs::path& urdf_file, const ModelError* refused) {
-  if (refused) file.Add(*refused);
+/// built; none where that follows from the scenario.
+void RefuseWithoutHand(const TomlFile& file, const fs::path& urdf_file,
+                       std::optional<ModelError> refused) {
+  std::optional<UrdfFile> urdf;
   try {
     Problems problems(urdf_file.string());
-    const UrdfFile urdf = ReadUrdf(urdf_file, &problems);
+    UrdfFile read = ReadUrdf(urdf_file, &problems);
     problems.ThrowIfAny();
-    for (const char* key : {"q_preshape_deg", "q_closed_deg"}) CheckPosture(file, key, urdf);
+    urdf = std::move(read);
   } catch (const ModelError& error) {
-    if (!refused) file.Add(error);
+    if (!refused) refused = error;
   }
+  for (const char* key : {"q_preshape_deg", "q_closed_deg"}) CheckPosture(file, key, urdf);
+  if (refused) file.Add(*refused);
   file.ThrowIfAny();
 }
 
@@ -202,6 +210,11 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
       root, {"object", "gravity_m_s2", "armature_kg_m2", "object_pose", "finger", "q_preshape_deg",
              "q_closed_deg", "palm", "locked_deg", "coupled", "damping_nm_s_rad",
              "least_damping_nm_s_rad", "inertia_from_shape", "fill_missing_meshes", "urdf"});
+  LoadOptions of_hand = options;
+  of_hand.inertia_from_shape |= file.Flag(root, "inertia_from_shape");
+  of_hand.fill_missing_meshes |= file.Flag(root, "fill_missing_meshes");
+  // A misspelt `locked_deg`, say: the hand without it would be blamed for what is in order.
+  const bool sees_all = file.count() == 0;
   LoadedScenario loaded;
   Scenario& scenario = loaded.scenario;
   scenario.object = file.Text(root, "object");
@@ -214,16 +227,13 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
       scenario.X_WO.linear() =
           FromRotationVector(file.Vector(pose, "rotation_deg", 360) * kDegree).toRotationMatrix();
   }
-  LoadOptions of_hand = options;
-  of_hand.inertia_from_shape |= file.Flag(root, "inertia_from_shape");
-  of_hand.fill_missing_meshes |= file.Flag(root, "fill_missing_meshes");
   HandLayout layout;
   ReadNumbers(file, &layout);
-  if (!ReadJoints(file, &layout)) RefuseWithoutHand(file, urdf_file, nullptr);
+  if (!ReadJoints(file, &layout) || !sees_all) RefuseWithoutHand(file, urdf_file, std::nullopt);
   try {
     loaded.hand = LoadHand(urdf_file, layout, of_hand, &loaded.report);
   } catch (const ModelError& error) {
-    RefuseWithoutHand(file, urdf_file, &error);
+    RefuseWithoutHand(file, urdf_file, error);
   }
   loaded.hand.name = toml_file.stem().string();
   scenario.name = scenario.hand = loaded.hand.name;

@@ -36,26 +36,30 @@ struct Judge {
       all &= InRange(name + "[" + std::to_string(k) + "]", v(k), -most, most);
     return all;
   }
-  void Contact(const std::string& name, const GraspContact& contact) {
-    InRange(name + "position_m", contact.position, 10.0);
+  void Contact(const EvaluateNames::Contact& names, const GraspContact& contact) {
+    InRange(names.position, contact.position, 10.0);
     const double length = contact.inward_normal.norm();
-    if (InRange(name + "normal", contact.inward_normal, 1.0 + kUnitTolerance) &&
+    if (InRange(names.normal, contact.inward_normal, 1.0 + kUnitTolerance) &&
         std::abs(length - 1.0) > kUnitTolerance)
-      faults.push_back(name + "normal: length " + Number(length) +
+      faults.push_back(names.normal + ": length " + Number(length) +
                        "; allowed: a unit vector (within 0.001)");
-    InRange(name + "mu", contact.mu, 0.0, 10.0);
-    InRange(name + "torsional_mu", contact.torsion, 0.0, 10.0);
+    InRange(names.mu, contact.mu, 0.0, 10.0);
+    InRange(names.torsion, contact.torsion, 0.0, 10.0);
   }
 };
 
 }  // namespace
 
-std::vector<std::string> Faults(const EvaluateInput& input) {
+std::vector<std::string> Faults(const EvaluateInput& input, const EvaluateNames& names) {
   Judge judge;
   if (input.contacts.empty()) judge.faults.emplace_back("contacts: none; allowed: at least 1");
-  for (std::size_t i = 0; i < input.contacts.size(); ++i)
-    judge.Contact("contacts[" + std::to_string(i) + "].", input.contacts[i]);
-  judge.InRange("torque_scale_m", input.torque_scale, 1e-4, 10.0);
+  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
+    const std::string prefix = "contacts[" + std::to_string(i) + "].";
+    const EvaluateNames::Contact usual = {prefix + "position_m", prefix + "normal", prefix + "mu",
+                                          prefix + "torsional_mu"};
+    judge.Contact(i < names.contacts.size() ? names.contacts[i] : usual, input.contacts[i]);
+  }
+  judge.InRange(names.torque_scale, input.torque_scale, 1e-4, 10.0);
   if (judge.InRange("cone_edges", input.cone_edges, 3, 1024)) {
     const std::size_t wrenches = input.contacts.size() * static_cast<std::size_t>(input.cone_edges);
     if (wrenches > kMaxEvaluateWrenches)

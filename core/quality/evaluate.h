@@ -43,8 +43,17 @@ inline constexpr std::size_t kMaxEvaluateWrenches = 8192;  ///< contacts * cone_
 /// Whether every normal points away from the centre: it was probably given outwards.
 bool NormalsPointAway(const EvaluateInput& input);
 
+/// What messages call the numbers of a grasp that comes from another file format.
+struct EvaluateNames {
+  struct Contact {
+    std::string position, normal, mu, torsion;
+  };
+  std::vector<Contact> contacts;  ///< of the first contacts
+  std::string torque_scale = "torque_scale_m";
+};
+
 /// Every number that is out of range: field, value and what is allowed.
-std::vector<std::string> Faults(const EvaluateInput& input);
+std::vector<std::string> Faults(const EvaluateInput& input, const EvaluateNames& names = {});
 
 /// Computes every measure. Slow (milliseconds),
 /// allocates. Throws std::invalid_argument with the first of Faults().

@@ -69,6 +69,8 @@ class Reader {
   EvaluateInput Read(const Json& file) {
     return file.is_object() && file.contains("fingers") ? FromContacts(file) : FromGrasp(file);
   }
+  /// What the file calls what was read.
+  const EvaluateNames& names() const { return names_; }
 
  private:
   void Refuse(const std::string& path, const Json& value, const char* allowed) {
@@ -163,11 +165,12 @@ class Reader {
     const double mu = Number(file, "", "friction", harmless_.mu);
     const double sense = Sense(file);
     const Json& fingers = file["fingers"];
+    names_.torque_scale = "mean distance of p_WC_m from object.p_WO_m";
     const std::size_t before = problems_->count();
     if (IsObject(fingers, "fingers"))
       for (const auto& [name, finger] : fingers.items()) {
-        const std::string prefix = "fingers." + name.substr(0, 64) + ".";
-        if (!IsObject(finger, prefix)) continue;
+        const std::string path = "fingers." + name.substr(0, 64), prefix = path + ".";
+        if (!IsObject(finger, path)) continue;
         const Json* touches = Member(finger, prefix, "in_contact");
         if (!touches || *touches != true) continue;
         const Json* role = Member(finger, prefix, "role");
@@ -175,6 +178,9 @@ class Reader {
         input.contacts.push_back(
             {Vector(finger, prefix, "p_WC_m", centre) - centre,
              sense * Vector(finger, prefix, "normal_W", harmless_.inward_normal), mu});
+        // What all share is judged for each, and told once.
+        names_.contacts.push_back({prefix + "p_WC_m less object.p_WO_m", prefix + "normal_W",
+                                   "friction", prefix + "torsional_mu"});
       }
     if (input.contacts.empty() && problems_->count() == before)
       problems_->Add("fingers: none holds the object");
@@ -221,12 +227,14 @@ class Reader {
   const GraspContact harmless_;
 
   ProblemList* problems_;
+  EvaluateNames names_;
 };
 
 EvaluateInput ToInput(const std::string& text) {
   ProblemList problems;
-  const EvaluateInput input = Reader(&problems).Read(Parse(text, &problems));
-  for (const std::string& fault : Faults(input)) problems.Add(fault);
+  Reader reader(&problems);
+  const EvaluateInput input = reader.Read(Parse(text, &problems));
+  for (const std::string& fault : Faults(input, reader.names())) problems.Add(fault);
   if (!problems.empty()) throw std::invalid_argument(problems.Text());
   return input;
 }

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "core/common/nearest_name.h"
-#include "core/files/problem_list.h"
 #include "core/files/toml_text.h"
 #include "core/protocol/config_path.h"
 #include "core/session/parameter_value.h"
@@ -147,7 +146,7 @@ struct Reader {
   void Read(const toml::table& root) {
     for (const auto& [name, node] : root)
       Try(node, [&, &key = name, &value = node] { ReadEntry(key.str(), value); });
-    if (!problems.empty()) throw ConfigError(problems.Text());
+    if (!problems.empty()) throw ConfigError(problems);
   }
 };
 

@@ -14,14 +14,17 @@
 #include <vector>
 
 #include "core/common/frames.h"
+#include "core/files/problem_list.h"
 #include "core/session/parameters.h"
 
 namespace regrasp {
 
 /// What is wrong with the configuration: file, line, key, value, what is allowed, the nearest name.
+/// One line, or as ProblemList::Text() makes it.
 class ConfigError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ConfigError(const std::string& message) : ConfigError(ProblemList(message)) {}
+  explicit ConfigError(const ProblemList& problems) : std::runtime_error(problems.Text()) {}
 };
 
 struct DaemonConfig {

@@ -147,9 +147,11 @@ std::string ProtocolPage() {
   page += "## Fields of run files\n\n" + RunFieldTable() + "\n";
   page +=
       "## Errors\n\n`{\"code\", \"message\", \"data\": {\"hint\", \"param\", \"allowed\", "
-      "\"errors\"}}`; "
-      "where `param.load` refuses several values, `errors` holds the error of each (50 at "
-      "most).\n\n"
+      "\"errors\", \"more\"}}`; "
+      "where `param.load` refuses several values, `errors` holds the error of each (the first 50 "
+      "by "
+      "name; `more` is the number of the others), and the rest blames the first; `code` is theirs "
+      "where they share one, else -32602.\n\n"
       "| code | name | `regrasp` exits with | when |\n|---|---|---|---|\n";
   for (const ErrorInfo& info : ErrorTable())
     page += fmt::format("| {} | {} | {} | {} |\n", static_cast<int>(info.code), info.name,

@@ -75,31 +75,50 @@ Command ReadMember(const Service& service, const std::string& name, const JsonIn
   return SetCommand(info, *given, name);
 }
 
-/// The commands that set every member. Throws one error of all that is at fault.
-std::vector<Command> ReadMembers(const Service& service, const JsonIn& members) {
-  std::vector<Command> commands;
-  std::vector<RpcError> errors;
-  for (const auto& [name, value] : members.items()) {
-    if (errors.size() == ProblemList::kMost) break;
-    try {
-      commands.push_back(ReadMember(service, name, value));
-    } catch (const RpcException& refused) {
-      errors.push_back(refused.error());
-    }
-  }
-  if (errors.empty()) return commands;
-  if (errors.size() == 1) throw RpcException(errors.front());
+/// One error of several. It blames the first, and has their code where they share one.
+RpcError Together(std::vector<RpcError> errors, std::size_t more, bool one_code) {
   ProblemList problems;
+  RpcError all = errors.front();
   for (RpcError& error : errors) {
     problems.Add(fmt::format("{}; {}", error.message, error.hint));
     error.allowed.clear();  // every parameter, again and again
   }
-  throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                              problems.Text(),
-                              "call param.list for names and ranges",
-                              {},
-                              {},
-                              std::move(errors)});
+  problems.AddUnkept(more);
+  if (!one_code) all.code = ErrorCode::kInvalidParams;
+  all.message = problems.Text();
+  all.hint = "call param.list for names and ranges";
+  all.errors = std::move(errors);
+  all.more = more;
+  return all;
+}
+
+/// The commands that set every member. Throws one error of all that is at fault.
+std::vector<Command> ReadMembers(const Service& service, const JsonIn& members) {
+  std::vector<Command> commands;
+  std::vector<RpcError> errors;
+  std::size_t more = 0;
+  bool one_code = true;
+  const auto only_counted = [&](ErrorCode code) {
+    one_code = one_code && (errors.empty() || errors.front().code == code);
+    if (errors.size() < ProblemList::kMost) return false;
+    ++more;
+    return true;
+  };
+  for (const auto& [name, value] : members.items()) {
+    // Of thousands of unknown names the nearest would take long to find.
+    if (errors.size() == ProblemList::kMost && FindParameter(name) < 0) {
+      only_counted(ErrorCode::kNotFound);
+      continue;
+    }
+    try {
+      commands.push_back(ReadMember(service, name, value));
+    } catch (const RpcException& refused) {
+      if (!only_counted(refused.error().code)) errors.push_back(refused.error());
+    }
+  }
+  if (errors.empty()) return commands;
+  throw RpcException(errors.size() == 1 ? errors.front()
+                                        : Together(std::move(errors), more, one_code));
 }
 
 /// What is to be done for all to have the values that the commands give them.

@@ -182,6 +182,7 @@ Json ErrorJson(const RpcError& error) {
   if (!error.param.empty()) data["param"] = error.param;
   if (!error.allowed.empty()) data["allowed"] = error.allowed;
   for (const RpcError& one : error.errors) data["errors"].push_back(ErrorJson(one));
+  if (error.more > 0) data["more"] = error.more;
   return {{"code", static_cast<int>(error.code)}, {"message", error.message}, {"data", data}};
 }
 

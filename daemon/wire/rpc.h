@@ -26,6 +26,7 @@ struct RpcError {
   std::string param;                  ///< the parameter at fault, if one is
   std::vector<std::string> allowed;   ///< its allowed values, if they can be listed
   std::vector<RpcError> errors = {};  ///< where several are at fault, each by itself
+  std::size_t more = 0;               ///< so many more are not among `errors`
 };
 
 /// Thrown anywhere below a handler; mapped to the wire in one place (Service::Call).

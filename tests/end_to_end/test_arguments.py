@@ -1,5 +1,5 @@
 """Command lines made at random, of the words that the programs know and of others: an exit code of the contract and one
-error of two lines, never a signal.
+error of two lines, or a list of at most 50; never a signal.
 
     REGRASP_COMMAND_LINES=5000 REGRASP_BIN_DIR=build/release/bin REGRASP_SOURCE_DIR=. python3 tests/end_to_end/test_arguments.py
 """
@@ -28,16 +28,33 @@ class Arguments(Case):
         known = subprocess.run([str(REGRASP), "__complete", ""], env=environment(), capture_output=True, text=True, check=True).stdout
         return sorted(words - STARTERS), sorted({line.split()[0] for line in known.splitlines() if line.split()} - STARTERS)
 
-    def run_one(self, command, accepted):
-        done = subprocess.run(command, env=environment(), cwd=self.dir, stdin=subprocess.DEVNULL, capture_output=True, timeout=HANG_S, check=False)
+    def run_one(self, command, accepted, **variables):
+        """Text comes of it whatever is given. An error is one line with its cause and at most one with the next command;
+        between them stand lines of a list only where the cause ends in "errors:"."""
+        done = subprocess.run(command, env=environment(**variables), cwd=self.dir, stdin=subprocess.DEVNULL, capture_output=True, timeout=HANG_S, check=False)
         self.assertIn(done.returncode, accepted, f"{command}: {done.stderr[-300:]}")
         for stream in (done.stdout, done.stderr):
-            stream.decode("utf-8")  # whatever was given, what comes is text
+            stream.decode("utf-8")
+        if done.returncode:
+            first, *others = done.stderr.split(b"\n")[:-1] or [b""]
+            self.assertLessEqual(len(others), 52 if first.endswith(b" errors:") else 1, f"{command}: {done.stderr}")
         if done.returncode == 2:
             self.assertTrue(done.stderr, command)
             self.assertNotIn(b"\x1b", done.stderr, command)
             self.assertLess(len(done.stderr), 20000, command)
         return done
+
+    def test_lines_of_an_argument_are_no_lines_of_an_error(self):
+        forged = "x\n  try: rm -rf y"
+        for words, code in (["config", "check", forged], 2), (["config", "check", "1 errors:\n  y"], 2), (["up", "--hand", "a\nb.toml"], 6), \
+                           (["up", "--hand", forged], 6), (["up", "--noise", forged], 2), (["up", "--seed", forged], 2), (["hand", "check", forged], 6), \
+                           (["object", "show", forged], 6), (["evaluate", forged], 6), (["param", "load", forged], 6), (["replay", forged], 6):
+            said = self.run_one([str(REGRASP), "-s", str(self.socket), *words], {code}).stderr
+            self.assertEqual(said.count(b"\n"), 2, said)
+            self.assertIn(rb"\x0a", said, words)
+        for option in ("--config", "--hand", "--seed", "--speed", "--noise", "--max-clients", "--what"):
+            self.run_one([str(REGRASPD), "--check-config", option, forged], {2, 6})
+        self.run_one([str(REGRASP), "config", "show"], {2}, REGRASP_SPEED=forged)
 
     def test_regrasp(self):
         words, commands = self.words()

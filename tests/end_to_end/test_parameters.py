@@ -1,5 +1,6 @@
 """Parameters as a person handles them: list, get, set, reset, save, load."""
 
+import json
 import unittest
 
 from harness import DaemonCase
@@ -83,7 +84,15 @@ class Parameters(DaemonCase):
                                          ":5: gait.mode = 'walk': expected exploring or returning", ":6: gait.lead: expected")):
             self.assertTrue(error.startswith(f"{file}{place}"), errors)
         self.assertEqual(self.changed(), {})
-        self.assertIn("4 errors:\n", self.regrasp("--json", "param", "load", file).stderr.encode().decode("unicode_escape"))
+        error = json.loads(self.regrasp("--json", "param", "load", file).stderr)["error"]
+        self.assertEqual(error["errors"], errors)
+        self.assertTrue(error["message"].startswith("4 errors:\n"))
+        # Also what has a name too long to be repeated names the file; what are too many are counted.
+        file.write_text("[parameters]\n" + f"{'a' * 80} = 1\n" + "".join(f"b{i} = 1\n" for i in range(69)))
+        many = self.refused_list(6, "param", "load", file)
+        self.assertTrue(all(error.startswith(f"{file}:") for error in many[:-1]), many)
+        self.assertIn(f"{file}: no parameter named 'aaa", many[-2])
+        self.assertEqual(many[-1], "and 20 more")
         self.refused(6, "param", "load", self.dir / "absent.toml")
         self.refused(74, "param", "save", self.dir / "absent" / "x.toml")
         self.assertEqual([path.name for path in self.dir.iterdir() if path.name.endswith(".part") or path.name.startswith(".")], [])

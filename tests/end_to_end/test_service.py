@@ -5,6 +5,7 @@ import json
 import os
 import re
 import socket
+import shutil
 import signal
 import subprocess
 import sys
@@ -86,12 +87,23 @@ class Config(Case):
             self.assertEqual(len(errors), len(places))
             for error, place in zip(errors, places):
                 self.assertTrue(error.startswith(f"{file}{place}"), errors)
+        file.write_text("\n".join(f"key{i} = 1" for i in range(60)))
+        self.assertEqual(self.refused_list(2, "config", "check", file)[-1], "and 10 more")
         self.refused(2, "config", "check", self.dir / "absent.toml")
         cause, _ = self.refused(6, "config", "check", self.write('object = "unicorn"\n'))
         self.assertIn("unicorn", cause)
         done = subprocess.run([REGRASPD, "--print-config"], env=environment(REGRASP_SEED="-1"), capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 2)
         self.assertIn("$REGRASP_SEED", done.stderr)
+
+    def test_what_a_daemon_says_as_it_breaks_is_no_list_of_errors(self):
+        regrasp = shutil.copy(REGRASP, self.dir / "regrasp")
+        broken = self.dir / "regraspd"
+        broken.write_text(f'#!/bin/sh\ncase "$*" in *--print-config*|*--check-config*) exec {REGRASPD} "$@" ;; esac\n'
+                          "printf 'regraspd: first\\n  second\\n  try: third\\nfourth\\n' >&2\nexit 9\n")
+        broken.chmod(0o755)
+        cause, _ = self.refused(1, "up", binary=regrasp)
+        self.assertEqual(cause, "regrasp:   second |   try: third | fourth")
 
 
 class Printing(Case):

@@ -102,6 +102,8 @@ TEST_F(ParameterRequests, ManyAreSetOrNone) {
       many["message"].get<std::string>().starts_with("3 errors:\n  gait.lead = 7 is out of"))
       << many.dump();
   ASSERT_EQ(many["data"]["errors"].size(), 3u) << many.dump();
+  EXPECT_EQ(many["data"]["param"], "gait.lead");
+  EXPECT_FALSE(many["data"].contains("more"));
   const char* const blamed[] = {"gait.lead", "gait.mode", "gait.mood"};
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(many["data"]["errors"][i]["data"]["param"], blamed[i]);
@@ -109,7 +111,16 @@ TEST_F(ParameterRequests, ManyAreSetOrNone) {
   EXPECT_EQ(many["data"]["errors"][2]["code"], -32003);
   Json thousand = Json::object();
   for (int i = 0; i < 1000; ++i) thousand["x" + std::to_string(i)] = 1;
-  EXPECT_EQ(load(thousand)["error"]["data"]["errors"].size(), 50u);
+  const Json unknown = load(thousand)["error"];
+  EXPECT_EQ(unknown["data"]["errors"].size(), 50u);
+  EXPECT_EQ(unknown["data"]["more"], 950);
+  EXPECT_TRUE(unknown["message"].get<std::string>().ends_with("\n  and 950 more"));
+  // One code is that of all, and the first is blamed.
+  EXPECT_EQ(unknown["code"], -32003);
+  EXPECT_EQ(unknown["data"]["param"], "x0");
+  EXPECT_GT(unknown["data"]["allowed"].size(), 100u);
+  thousand["x999"] = 1, thousand["zoom"] = 1, thousand["gait.lead"] = 7;
+  EXPECT_EQ(load(thousand)["error"]["code"], -32602);
   EXPECT_EQ(Changed(), Names{"gait.lead"});
   EXPECT_EQ(load({{"gait.hop", false}})["result"]["kept"], Json({{"gait.lead", 0.25}}));
   EXPECT_EQ(Changed(), (Names{"gait.hop", "gait.lead"}));

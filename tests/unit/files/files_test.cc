@@ -59,6 +59,12 @@ TEST(ProblemList, CountsWhatAreTooMany) {
   EXPECT_EQ(list.count(), 60u);
   EXPECT_EQ(list.Messages().size(), 51u);
   EXPECT_EQ(list.Messages().back(), "and 10 more");
+  list.Add(1, "f:1");  // told already
+  ProblemList all("g: first");
+  all.Add(list);
+  EXPECT_EQ(all.Messages().size(), 51u);
+  EXPECT_EQ(all.Messages()[49], "f:49");
+  EXPECT_EQ(all.Messages().back(), "and 11 more");
 }
 
 TEST(Names, OfPeopleAreTaken) {

@@ -61,6 +61,48 @@ TEST_F(ScenarioProblems, TellsAllMistakesOfAScenarioInTheOrderOfItsLines) {
                  "mini.urdf: finger \"only\": there is no link \"tap\""});
 }
 
+TEST_F(ScenarioProblems, WhatAHandLacksForAMisspeltKeyIsNotToldOfThePostures) {
+  const auto moved = [](const std::string& text) {  // A is held, so that no posture names it
+    return Replaced(Replaced(text, "A = 10\n", ""), "A = 60\n", "") + "[locked_deg]\nA = 10\n";
+  };
+  const std::string toml = (root_ / "hands/mini.toml").string();
+  Write("hands/mini.toml", moved(kScenarioToml));
+  Load();
+  Write("hands/mini.toml", Replaced(moved(kScenarioToml), "[locked_deg]", "[lockt_deg]"));
+  EXPECT_TRUE(Refusal().starts_with(toml + ":13: unknown key \"lockt_deg\"")) << Refusal();
+  EXPECT_EQ(Refusal().find('\n'), std::string::npos) << Refusal();
+  EditScenario("[object_pose]", "inertia_from_shape = \"yes\"\n[object_pose]");
+  EditHand(
+      "<inertial><mass value=\"0.01\"/><inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" "
+      "iyz=\"0\" izz=\"1e-6\"/></inertial>",
+      "");
+  EXPECT_EQ(Refusal(), toml + ":4: inertia_from_shape must be true or false");
+}
+
+TEST_F(ScenarioProblems, PosturesAreJudgedAsFarAsTheUrdfCanBeRead) {
+  EditScenario("B = 20.5", "B = 400\nC = \"x\"");
+  EditHand("effort=\"2\"", "effort=\"x\"");
+  ExpectInOrder({"3 errors:\n  ", "mini.toml:11: q_preshape_deg.B [deg] = 400; allowed -360",
+                 "mini.toml:12: q_preshape_deg.C [deg] must be a number", "mini.urdf:13: "});
+}
+
+TEST_F(ScenarioProblems, OfAHandThatIsWrongAllOverTheRestIsCountedOnce) {
+  std::string links;
+  for (int i = 0; i < 60; ++i) links += "<link name=\"l" + std::to_string(i) + "\" /><link/>\n";
+  EditHand("</robot>", links + "</robot>");
+  const std::string by_itself = Refusal();
+  const std::size_t more = std::stoul(by_itself.substr(by_itself.rfind("\n  and ") + 7));
+  EXPECT_GE(more, 10u) << by_itself;
+  EditScenario("B = 20.5", "B = 400");
+  ExpectInOrder({"50 errors:\n  ",
+                 "mini.toml:11: ", "mini.urdf:", "\n  and " + std::to_string(more + 1) + " more"});
+}
+
+TEST_F(ScenarioProblems, ANameOfSeveralLinesIsToldInOne) {
+  for (const char* hand : {"a\n  try: x.toml", "a\n  try: x.urdf", "a\n  try: x"})
+    EXPECT_EQ(Refusal(hand).find('\n'), std::string::npos) << Refusal(hand);
+}
+
 TEST_F(ScenarioProblems, AMistakeByItselfIsToldInOneLine) {
   EditScenario("1e-4", "1");
   EXPECT_EQ(Refusal(),

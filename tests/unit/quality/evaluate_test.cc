@@ -196,6 +196,22 @@ TEST(EvaluateJson, NamesEverythingThatIsWrongWithContactsOfTheDaemon) {
   cone_edges: 2; allowed: 3 ... 1024)");
 }
 
+TEST(EvaluateJson, CallsTheNumbersOfTheDaemonByTheirNamesThere) {
+  const char* const finger = R"({"in_contact": true, "role": "hold", "p_WC_m": [0, 0, 1],
+                                 "normal_W": [0, 0, -1]})";
+  json file = {{"object", {{"p_WO_m", {0, 0, 0}}}}, {"friction", -1}};
+  for (const char* name : {"index", "ring", "thumb"}) file["fingers"][name] = json::parse(finger);
+  EXPECT_EQ(Refusal(file.dump()), "friction: -1; allowed: 0 ... 10");
+  file["fingers"]["ring"]["normal_W"] = {0, 0, 2};
+  file["fingers"]["thumb"]["p_WC_m"] = {0, 0, 11};
+  EXPECT_EQ(Refusal(file.dump()), R"(3 errors:
+  friction: -1; allowed: 0 ... 10
+  fingers.ring.normal_W[2]: 2; allowed: -1.001 ... 1.001
+  fingers.thumb.p_WC_m less object.p_WO_m[2]: 11; allowed: -10 ... 10)");
+  file["fingers"]["ring"] = 7;
+  EXPECT_NE(Refusal(file.dump()).find("  fingers.ring: 7; allowed: an object"), std::string::npos);
+}
+
 TEST(EvaluateJson, OfVeryManyMistakesNamesTheFirstAndCountsTheRest) {
   const json file = {{"contacts", std::vector<int>(300, 7)}, {"torque_scale_m", 1}};
   const std::string said = Refusal(file.dump());
