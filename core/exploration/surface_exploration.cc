@@ -9,8 +9,7 @@ namespace {
 
 // Position variance below which the least-squares rule distrusts a direction: contact noise that is
 // left after filtering is about 0.13 mm.
-constexpr double kRidge = 2e-8;  // m²
-// Rate at which a finger backs out of a wall.
+constexpr double kRidge = 2e-8;    // m²
 constexpr double kSameWall = 0.7;  // cosine between two walls that are taken for the same one
 
 }  // namespace

@@ -60,19 +60,13 @@ double MeanDistance(const std::vector<GraspContact>& contacts) {
   return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
 }
 
-/// Reads what it can and gathers what is wrong; in its place stand values that are in range, so
-/// that nothing is blamed twice.
-class Reader {
+/// Numbers and names out of JSON. What is wrong with one is gathered, and in its place stands
+/// `otherwise`, a value that is in range, so that nothing is blamed twice. `path` and `prefix`:
+/// what messages call a value, and what stands before the name of a member.
+class FieldReader {
  public:
-  explicit Reader(ProblemList* problems) : problems_(problems) {}
+  explicit FieldReader(ProblemList* problems) : problems_(problems) {}
 
-  EvaluateInput Read(const Json& file) {
-    return file.is_object() && file.contains("fingers") ? FromContacts(file) : FromGrasp(file);
-  }
-  /// What the file calls what was read.
-  const EvaluateNames& names() const { return names_; }
-
- private:
   void Refuse(const std::string& path, const Json& value, const char* allowed) {
     problems_->Add(path + ": " + Quoted(value) + "; allowed: " + allowed);
   }
@@ -130,111 +124,124 @@ class Reader {
     return value ? Vector(*value, prefix + name, otherwise) : otherwise;
   }
 
-  int Edges(const Json& edges) {
-    const double number = edges.is_number() ? edges.get<double>() : 0.5;
-    if (number == std::floor(number) && std::abs(number) <= 1e6) return static_cast<int>(number);
-    Refuse("cone_edges", edges, "an integer, 3 ... 1024");
-    return EvaluateInput().cone_edges;
-  }
-
-  /// +1 where normals point into the object, -1 where they point out of it.
-  double Sense(const Json& file) {
-    const auto normals = file.find("normals");
-    if (normals == file.end() || *normals == "inward") return 1;
-    if (*normals == "outward") return -1;
-    Refuse("normals", *normals, "\"inward\", \"outward\"");
-    return 1;
-  }
-
-  void ReadOptions(const Json& file, EvaluateInput* input) {
-    if (const auto edges = file.find("cone_edges"); edges != file.end())
-      input->cone_edges = Edges(*edges);
-    if (const auto weight = file.find("weight_n"); weight != file.end())
-      input->weight = Vector(*weight, "weight_n", Vector3d::Zero());
-    if (const auto force = file.find("max_force_n"); force != file.end())
-      input->max_force = Number(*force, "max_force_n", input->max_force);
-  }
-
-  /// What `regrasp contacts --json` prints: the fingers that hold, about the sensed centre of the
-  /// object. Measures of its own that this format does not know are passed over.
-  EvaluateInput FromContacts(const Json& file) {
-    EvaluateInput input;
-    Vector3d centre = Vector3d::Zero();
-    if (const Json* object = Member(file, "", "object"); object && IsObject(*object, "object"))
-      centre = Vector(*object, "object.", "p_WO_m", centre);
-    const double mu = Number(file, "", "friction", harmless_.mu);
-    const double sense = Sense(file);
-    const Json& fingers = file["fingers"];
-    names_.torque_scale = "mean distance of p_WC_m from object.p_WO_m";
-    const std::size_t before = problems_->count();
-    if (IsObject(fingers, "fingers"))
-      for (const auto& [name, finger] : fingers.items()) {
-        const std::string path = "fingers." + name.substr(0, 64), prefix = path + ".";
-        if (!IsObject(finger, path)) continue;
-        const Json* touches = Member(finger, prefix, "in_contact");
-        if (!touches || *touches != true) continue;
-        const Json* role = Member(finger, prefix, "role");
-        if (!role || *role == "free") continue;
-        input.contacts.push_back(
-            {Vector(finger, prefix, "p_WC_m", centre) - centre,
-             sense * Vector(finger, prefix, "normal_W", harmless_.inward_normal), mu});
-        // What all share is judged for each, and told once.
-        names_.contacts.push_back({prefix + "p_WC_m less object.p_WO_m", prefix + "normal_W",
-                                   "friction", prefix + "torsional_mu"});
-      }
-    if (input.contacts.empty() && problems_->count() == before)
-      problems_->Add("fingers: none holds the object");
-    ReadOptions(file, &input);
-    input.torque_scale = problems_->empty() ? MeanDistance(input.contacts) : kScale;
-    if (input.contacts.empty()) input.contacts.push_back(harmless_);
-    return input;
-  }
-
-  EvaluateInput FromGrasp(const Json& file) {
-    EvaluateInput input;
-    input.contacts = {harmless_};
-    input.torque_scale = kScale;
-    if (!IsObject(file, "the file")) return input;
-    CheckNames(file, "",
-               {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n", "normals"});
-    const double sense = Sense(file);
-    const Json* contacts = Member(file, "", "contacts");
-    if (contacts && !contacts->is_array())
-      Refuse("contacts", *contacts, "an array of objects");
-    else if (contacts) {
-      input.contacts.clear();
-      for (std::size_t i = 0; i < contacts->size(); ++i)
-        input.contacts.push_back(
-            Contact((*contacts)[i], "contacts[" + std::to_string(i) + "]", sense));
-    }
-    input.torque_scale = Number(file, "", "torque_scale_m", kScale);
-    ReadOptions(file, &input);
-    return input;
-  }
-
-  GraspContact Contact(const Json& contact, const std::string& path, double sense) {
-    if (!IsObject(contact, path)) return harmless_;
-    const std::string prefix = path + ".";
-    CheckNames(contact, prefix, {"position_m", "normal", "mu", "torsional_mu"});
-    const auto torsion = contact.find("torsional_mu");
-    return {Vector(contact, prefix, "position_m", harmless_.position),
-            sense * Vector(contact, prefix, "normal", harmless_.inward_normal),
-            Number(contact, prefix, "mu", harmless_.mu),
-            torsion == contact.end() ? 0.0 : Number(*torsion, prefix + "torsional_mu", 0.0)};
-  }
-
-  static constexpr double kScale = 1;
-  const GraspContact harmless_;
-
+ private:
   ProblemList* problems_;
-  EvaluateNames names_;
 };
+
+const GraspContact kHarmless;  // stands where none can be read
+constexpr double kHarmlessScale = 1;
+
+/// +1 where normals point into the object, -1 where they point out of it.
+double Sense(const Json& file, FieldReader* fields) {
+  const auto normals = file.find("normals");
+  if (normals == file.end() || *normals == "inward") return 1;
+  if (*normals == "outward") return -1;
+  fields->Refuse("normals", *normals, "\"inward\", \"outward\"");
+  return 1;
+}
+
+int Edges(const Json& edges, FieldReader* fields) {
+  const double number = edges.is_number() ? edges.get<double>() : 0.5;
+  if (number == std::floor(number) && std::abs(number) <= 1e6) return static_cast<int>(number);
+  fields->Refuse("cone_edges", edges, "an integer, 3 ... 1024");
+  return EvaluateInput().cone_edges;
+}
+
+/// What both formats may have.
+void ReadOptions(const Json& file, FieldReader* fields, EvaluateInput* input) {
+  if (const auto edges = file.find("cone_edges"); edges != file.end())
+    input->cone_edges = Edges(*edges, fields);
+  if (const auto weight = file.find("weight_n"); weight != file.end())
+    input->weight = fields->Vector(*weight, "weight_n", Vector3d::Zero());
+  if (const auto force = file.find("max_force_n"); force != file.end())
+    input->max_force = fields->Number(*force, "max_force_n", input->max_force);
+}
+
+/// A finger of `regrasp contacts --json` holds the object where it touches and is not free.
+bool Holds(const Json& finger, const std::string& prefix, FieldReader* fields) {
+  const Json* touches = fields->Member(finger, prefix, "in_contact");
+  if (!touches || *touches != true) return false;
+  const Json* role = fields->Member(finger, prefix, "role");
+  return role && *role != "free";
+}
+
+/// What `regrasp contacts --json` prints: the fingers that hold, about the sensed centre of the
+/// object. Measures of its own that this format does not know are passed over.
+EvaluateInput FromContacts(const Json& file, ProblemList* problems, EvaluateNames* names) {
+  FieldReader fields(problems);
+  EvaluateInput input;
+  Vector3d centre = Vector3d::Zero();
+  if (const Json* object = fields.Member(file, "", "object");
+      object && fields.IsObject(*object, "object"))
+    centre = fields.Vector(*object, "object.", "p_WO_m", centre);
+  const double mu = fields.Number(file, "", "friction", kHarmless.mu);
+  const double sense = Sense(file, &fields);
+  const Json& fingers = file["fingers"];
+  names->torque_scale = "mean distance of p_WC_m from object.p_WO_m";
+  const std::size_t before = problems->count();
+  if (fields.IsObject(fingers, "fingers"))
+    for (const auto& [name, finger] : fingers.items()) {
+      const std::string path = "fingers." + name.substr(0, 64), prefix = path + ".";
+      if (!fields.IsObject(finger, path) || !Holds(finger, prefix, &fields)) continue;
+      input.contacts.push_back(
+          {fields.Vector(finger, prefix, "p_WC_m", centre) - centre,
+           sense * fields.Vector(finger, prefix, "normal_W", kHarmless.inward_normal), mu});
+      // What all share is judged for each, and told once.
+      names->contacts.push_back({prefix + "p_WC_m less object.p_WO_m", prefix + "normal_W",
+                                 "friction", prefix + "torsional_mu"});
+    }
+  if (input.contacts.empty() && problems->count() == before)
+    problems->Add("fingers: none holds the object");
+  ReadOptions(file, &fields, &input);
+  input.torque_scale = problems->empty() ? MeanDistance(input.contacts) : kHarmlessScale;
+  if (input.contacts.empty()) input.contacts.push_back(kHarmless);
+  return input;
+}
+
+GraspContact ReadContact(const Json& contact, const std::string& path, double sense,
+                         FieldReader* fields) {
+  if (!fields->IsObject(contact, path)) return kHarmless;
+  const std::string prefix = path + ".";
+  fields->CheckNames(contact, prefix, {"position_m", "normal", "mu", "torsional_mu"});
+  const auto torsion = contact.find("torsional_mu");
+  return {fields->Vector(contact, prefix, "position_m", kHarmless.position),
+          sense * fields->Vector(contact, prefix, "normal", kHarmless.inward_normal),
+          fields->Number(contact, prefix, "mu", kHarmless.mu),
+          torsion == contact.end() ? 0.0 : fields->Number(*torsion, prefix + "torsional_mu", 0.0)};
+}
+
+/// A grasp file (evaluate_json.h).
+EvaluateInput FromGrasp(const Json& file, ProblemList* problems) {
+  FieldReader fields(problems);
+  EvaluateInput input;
+  input.contacts = {kHarmless};
+  input.torque_scale = kHarmlessScale;
+  if (!fields.IsObject(file, "the file")) return input;
+  fields.CheckNames(
+      file, "", {"contacts", "torque_scale_m", "cone_edges", "weight_n", "max_force_n", "normals"});
+  const double sense = Sense(file, &fields);
+  const Json* contacts = fields.Member(file, "", "contacts");
+  if (contacts && !contacts->is_array()) {
+    fields.Refuse("contacts", *contacts, "an array of objects");
+  } else if (contacts) {
+    input.contacts.clear();
+    for (std::size_t i = 0; i < contacts->size(); ++i)
+      input.contacts.push_back(
+          ReadContact((*contacts)[i], "contacts[" + std::to_string(i) + "]", sense, &fields));
+  }
+  input.torque_scale = fields.Number(file, "", "torque_scale_m", kHarmlessScale);
+  ReadOptions(file, &fields, &input);
+  return input;
+}
 
 EvaluateInput ToInput(const std::string& text) {
   ProblemList problems;
-  Reader reader(&problems);
-  const EvaluateInput input = reader.Read(Parse(text, &problems));
-  for (const std::string& fault : Faults(input, reader.names())) problems.Add(fault);
+  const Json file = Parse(text, &problems);
+  EvaluateNames names;  // what the file calls what is read
+  const bool from_contacts = file.is_object() && file.contains("fingers");
+  const EvaluateInput input =
+      from_contacts ? FromContacts(file, &problems, &names) : FromGrasp(file, &problems);
+  for (const std::string& fault : Faults(input, names)) problems.Add(fault);
   if (!problems.empty()) throw std::invalid_argument(problems.Text());
   return input;
 }

@@ -98,22 +98,25 @@ std::vector<Command> ReadMembers(const Service& service, const JsonIn& members) 
   std::vector<RpcError> errors;
   std::size_t more = 0;
   bool one_code = true;
-  const auto only_counted = [&](ErrorCode code) {
-    one_code = one_code && (errors.empty() || errors.front().code == code);
-    if (errors.size() < ProblemList::kMost) return false;
-    ++more;
-    return true;
+  const auto add = [&](const RpcError& error) {
+    one_code = one_code && (errors.empty() || errors.front().code == error.code);
+    if (errors.size() < ProblemList::kMost)
+      errors.push_back(error);
+    else
+      ++more;
   };
+  RpcError unknown;
+  unknown.code = ErrorCode::kNotFound;
   for (const auto& [name, value] : members.items()) {
     // Of thousands of unknown names the nearest would take long to find.
     if (errors.size() == ProblemList::kMost && FindParameter(name) < 0) {
-      only_counted(ErrorCode::kNotFound);
+      add(unknown);
       continue;
     }
     try {
       commands.push_back(ReadMember(service, name, value));
     } catch (const RpcException& refused) {
-      if (!only_counted(refused.error().code)) errors.push_back(refused.error());
+      add(refused.error());
     }
   }
   if (errors.empty()) return commands;

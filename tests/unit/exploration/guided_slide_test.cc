@@ -237,6 +237,34 @@ TEST_F(SlideTest, AJointLimitIsAWall) {
   EXPECT_LT(deepest, 1e-3);  // the dither's circle has a radius of 0.5 mm
 }
 
+// On the side of its link, and its joint held by limits on either side: it stays there, feels no
+// gradient, and ends without another try. What phi was there does not count as the best met.
+TEST_F(SlideTest, EndsOnTheSideOfItsLinkThatItCannotLeave) {
+  const Vector3d p = StartAt(4e-3), n = p.normalized();
+  const Vector3d along = TangentPart(Vector3d::UnitX(), n).normalized();
+  Shape capsule;
+  capsule.radius = 0.007;
+  capsule.b_L = p + capsule.radius * n + 3e-3 * along;  // its round end 3 mm ahead
+  capsule.a_L = capsule.b_L - 0.02 * along;
+  hand_.links[1].shapes = {capsule};
+  hand_.joints[0].axis_J = Vector3d::UnitZ();
+  hand_.joints[0].X_PJ.translation() = Vector3d(0, kLever, 0);
+  hand_.joints[0].lower = -1e-3;
+  hand_.joints[0].upper = 1e-3;
+  ForwardKinematics(hand_, estimate_.q, &estimate_.kinematics);
+  parameters_.onto_tip_s = 0.1;
+  profile_.tries = 3;
+  Start();
+  ASSERT_TRUE(RunTo(Phase::kExplore));
+  while (!slide_.slide_ended()) {
+    ASSERT_EQ(slide_.phase(), Phase::kExplore);
+    Tick();
+  }
+  EXPECT_EQ(slide_.end(), End::kOnSide);
+  EXPECT_NEAR(slide_.cycles() * kDt, parameters_.onto_tip_s, 2 * kDt);
+  EXPECT_NEAR((estimate_.fingers[0].p_WC - p).norm(), 0, 1e-5);
+}
+
 TEST_F(SlideTest, StaysInItsDiscAndEndsInside) {
   guide_.disc_centre_W = StartAt(4e-3);
   guide_.disc_radius = 1.5e-3;
