@@ -123,6 +123,7 @@ bool Grasped(Session* session) {
 std::vector<Sample> Slide(SessionConfig config, int finger, double angle) {
   config.parameters.exploration.update_cycles = 10000;
   config.parameters.exploration.eta = 0.01;
+  config.parameters.exploration.onto_tip_s = 0;
   const double tip_radius = config.model.hand.fingers[static_cast<std::size_t>(finger)].tip_radius;
   Session session(std::move(config));
   std::vector<Sample> samples;

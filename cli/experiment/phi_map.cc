@@ -14,18 +14,19 @@ namespace regrasp::cli {
 namespace {
 
 constexpr std::int64_t kSampleTicks = 50;  // 0.75 mm at 15 mm/s
-// Of the time that the straight way to the excursion bound takes: a wall is slid along, slowly, and
-// a finger on the side of its link slides onto the round tip first.
-constexpr double kTimeShare = 6;
+// Of the time that the straight way to the excursion bound takes: a wall is slid along, slowly.
+constexpr double kTimeShare = 4;
 // A contact that moved less than this in so many samples has arrived, at the bound or in a corner.
 constexpr double kStill_m = 4e-4;
 constexpr std::size_t kStillSamples = 6;
 constexpr std::int64_t kTransferLimit = 5000;  // load transfer before and after [ticks]
 constexpr double kTick_s = 1e-3;
 
-/// Parameters that turn Algorithm 1 into a straight slide: no update, and as fast as is allowed.
-constexpr std::array<std::pair<const char*, double>, 2> kStraight = {
-    std::pair{"exploration.update_cycles", 10000.0}, std::pair{"exploration.eta", 0.01}};
+/// Parameters that turn Algorithm 1 into a straight slide: no update, as fast as is allowed, and
+/// from the side of a link along the ray too, where an exploration would leave it or give up.
+constexpr std::array<std::pair<const char*, double>, 3> kStraight = {
+    std::pair{"exploration.update_cycles", 10000.0}, std::pair{"exploration.eta", 0.01},
+    std::pair{"exploration.onto_tip_s", 0.0}};
 
 std::array<double, 3> Point(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
 
