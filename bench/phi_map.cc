@@ -104,7 +104,7 @@ double WallDepth(const HandModel& hand, const ExplorationParameters& parameters,
   f.normal_W = normal_W;
   f.J = PointJacobian(hand, estimate.kinematics, finger, p_WC);
   Walls walls;
-  FindWalls(hand, estimate, finger, parameters, &walls);
+  FindWalls(hand, estimate, finger, parameters, OnSide::kStay, &walls);
   double depth = 0;
   for (const Wall& wall : walls) depth = std::max(depth, wall.depth);
   return depth;

@@ -23,7 +23,7 @@ constexpr std::int64_t kTransferLimit = 5000;  // load transfer before and after
 constexpr double kTick_s = 1e-3;
 
 /// Parameters that turn Algorithm 1 into a straight slide: no update, as fast as is allowed, and
-/// from the side of a link along the ray too, where an exploration would leave it or give up.
+/// from the side of a link along the ray too, where an exploration would leave it first.
 constexpr std::array<std::pair<const char*, double>, 3> kStraight = {
     std::pair{"exploration.update_cycles", 10000.0}, std::pair{"exploration.eta", 0.01},
     std::pair{"exploration.onto_tip_s", 0.0}};

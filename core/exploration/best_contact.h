@@ -4,9 +4,16 @@
 /// does not count as a maximum. In W: a finger that sticks drags the object along, and a point of
 /// the object would run away from it.
 
+#include <cmath>
+
 #include "core/common/frames.h"
 
 namespace regrasp {
+
+/// Whether `phi` is above `before` by more than gain - 1 of its size.
+inline bool Gains(double phi, double before, double gain) {
+  return phi - before > (gain - 1) * std::abs(before);
+}
 
 class BestContact {
  public:
@@ -14,31 +21,44 @@ class BestContact {
   void Start(const Vector3d& p_WC, double phi) {
     p_WC_ = p_WC_best_ = p_WC;
     phi_ = phi_best_ = phi;
+    StartWaiting();
   }
-  /// One tick of `dt` [s]. `filter_s`: time constant of the low pass [s].
-  void Add(const Vector3d& p_WC, double phi, double filter_s, double dt) {
-    const double gain = dt / (filter_s + dt);
-    phi_ += gain * (phi - phi_);
-    p_WC_ += gain * (p_WC - p_WC_);
+  /// no_gain_s() counts from here.
+  void StartWaiting() {
+    phi_waited_ = phi_best_;
+    no_gain_s_ = 0;
+  }
+  /// One tick of `dt` [s]. `filter_s`: time constant of the low pass [s]; `gain`: see Gains().
+  void Add(const Vector3d& p_WC, double phi, double filter_s, double gain, double dt) {
+    const double share = dt / (filter_s + dt);
+    phi_ += share * (phi - phi_);
+    p_WC_ += share * (p_WC - p_WC_);
+    no_gain_s_ += dt;
     if (phi_ <= phi_best_) return;
     phi_best_ = phi_;
     p_WC_best_ = p_WC_;
+    if (Gains(phi_best_, phi_waited_, gain)) StartWaiting();
   }
   const Vector3d& p_WC() const { return p_WC_best_; }  ///< [m]
   double phi() const { return phi_best_; }
-  /// Whether the way back pays: the best phi is more than `gain` times the present one.
-  bool worth_returning(double gain) const { return phi_best_ > gain * phi_; }
+  double no_gain_s() const { return no_gain_s_; }  ///< since the best phi last gained [s]
+  /// Whether the way back pays: the best phi is a gain over the present one.
+  bool worth_returning(double gain) const { return Gains(phi_best_, phi_, gain); }
   template <typename V>
   void Fields(V& v) {
     v("p_WC", p_WC_);
     v("p_WC_best", p_WC_best_);
     v("phi", phi_);
     v("phi_best", phi_best_);
+    v("phi_waited", phi_waited_);
+    v("no_gain_s", no_gain_s_);
   }
 
  private:
   Vector3d p_WC_ = Vector3d::Zero(), p_WC_best_ = Vector3d::Zero();
   double phi_ = 0, phi_best_ = 0;
+  double phi_waited_ = 0;  // the best at the last gain
+  double no_gain_s_ = 0;
 };
 
 }  // namespace regrasp

@@ -50,6 +50,7 @@ struct ExplorationParameters {
   double little_gain = 1.02;    ///< ... the best phi is below so much of the first one
   double best_filter_s = 0.15;  ///< low pass on phi and contact point before they count as best
   double worth_returning = 1.002;  ///< a best phi of so much of the last one is returned to
+  double no_gain_s = 2.0;          ///< the search ends after so long without such a gain; 0: never
   double return_gain = 8.0;        ///< of the way back: speed per distance [1/s]
   double arrived = 0.0002;         ///< ... which ends this near [m]
   double return_limit_s = 2.5;     ///< ... or after so long

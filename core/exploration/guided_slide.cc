@@ -32,8 +32,7 @@ int GuidedSlide::MaxCycles(const ExplorationParameters& parameters) const {
 
 bool GuidedSlide::TryAgain(const SlideProfile& profile,
                            const ExplorationParameters& parameters) const {
-  return end_ != End::kOnSide && tries_ + 1 < profile.tries &&
-         best_.phi() < parameters.little_gain * phi_initial_ &&
+  return tries_ + 1 < profile.tries && !Gains(best_.phi(), phi_initial_, parameters.little_gain) &&
          2 * cycles() < MaxCycles(parameters);
 }
 
@@ -113,10 +112,12 @@ SurfaceExploration::Input GuidedSlide::Sense(const ControlTick& tick, const Slid
   phi_ = objective.phi;
   on_stability_ = objective.on_stability;
   SurfaceExploration::Input input{finger.p_WC, finger.normal_W, phi_, {}};
-  FindWalls(tick.hand, tick.estimate, request_.finger, tick.exploration, &input.walls);
+  const bool stays = stays_on_side_ || tick.exploration.onto_tip_s <= 0;
+  FindWalls(tick.hand, tick.estimate, request_.finger, tick.exploration,
+            stays ? OnSide::kStay : OnSide::kLeave, &input.walls);
   const Vector3d out = TangentPart(finger.p_WC - guide.disc_centre_W, finger.normal_W);
   excess_ = out.norm() - guide.disc_radius;
-  if (excess_ > 0) input.walls.push_back({out.normalized(), excess_, true});
+  if (excess_ > 0) input.walls.push_back({out.normalized(), excess_, Wall::Kind::kMustLeave});
   return input;
 }
 
@@ -126,11 +127,13 @@ void GuidedSlide::StartAlgorithm(const SurfaceExploration::Input& input,
                    request_.seed + kTryStride * static_cast<std::uint64_t>(tries_),
                    MaxCycles(parameters) - cycles_before_, parameters);
   if (tries_ == 0 && !request_.gradient_W.isZero()) algorithm_.StartFrom(request_.gradient_W);
+  best_.StartWaiting();
   Enter(Phase::kExplore);
 }
 
 void GuidedSlide::Slide(const ControlTick& tick, const SlideProfile& profile,
                         const SlideGuide& guide, HybridController* controller, FingerTask* task) {
+  const bool was_on_stability = on_stability_;
   const SurfaceExploration::Input input = Sense(tick, guide);
   task->mode = FingerMode::kSlide;
   task->force = slide_force_;
@@ -154,11 +157,9 @@ void GuidedSlide::Slide(const ControlTick& tick, const SlideProfile& profile,
   }
   if (MustEnd(tick, controller->wrench())) return;
 
-  if (std::ranges::any_of(input.walls, &Wall::blind)) {
-    best_.Start(input.p_WC, phi_);  // it cannot come back onto the side of its link
-  } else if (excess_ < tick.exploration.disc_slack && phase_ != Phase::kReturn) {
-    best_.Add(input.p_WC, phi_, tick.exploration.best_filter_s, tick.dt);
-  }
+  // Values of another objective do not compare.
+  if (on_stability_ != was_on_stability) best_.Start(input.p_WC, phi_);
+  if (phase_ != Phase::kReturn) Remember(tick, input);
   if (phase_ == Phase::kExplore) {
     Explore(tick, profile, input, task);
   } else if (phase_ == Phase::kRecall) {
@@ -172,6 +173,17 @@ void GuidedSlide::Slide(const ControlTick& tick, const SlideProfile& profile,
     } else {
       EndSlide(end_);
     }
+  }
+}
+
+void GuidedSlide::Remember(const ControlTick& tick, const SurfaceExploration::Input& input) {
+  const ExplorationParameters& parameters = tick.exploration;
+  const bool blind = std::ranges::any_of(input.walls, &Wall::blind);
+  was_on_tip_ = was_on_tip_ || !blind;
+  if (!was_on_tip_) {
+    best_.Start(input.p_WC, phi_);  // it cannot come back up the side of its link
+  } else if (!blind && excess_ < parameters.disc_slack) {
+    best_.Add(input.p_WC, phi_, parameters.best_filter_s, parameters.worth_returning, tick.dt);
   }
 }
 
@@ -198,21 +210,26 @@ bool GuidedSlide::MustEnd(const ControlTick& tick, const ObjectWrench& wrench) {
 void GuidedSlide::Explore(const ControlTick& tick, const SlideProfile& profile,
                           const SurfaceExploration::Input& input, FingerTask* task) {
   using Status = SurfaceExploration::Status;
+  const bool least_squares = request_.estimator == Estimator::kLeastSquares;
+  const double no_gain_s = tick.exploration.no_gain_s;
   if (ticks_ * tick.dt > profile.explore_s) {
     end_ = End::kTime;
+  } else if (least_squares && no_gain_s > 0 && best_.no_gain_s() > no_gain_s) {
+    end_ = End::kNoGain;
   } else {
     const Status status = algorithm_.Update(input, tick.exploration, tick.dt);
     if (status == Status::kRunning) {
       task->v_W = patience_ * algorithm_.velocity_W();
       return;
     }
-    end_ = status == Status::kConverged ? End::kGradient
-           : status == Status::kBlind   ? End::kOnSide
-                                        : End::kMaxCycles;
+    if (status == Status::kBlind) {
+      stays_on_side_ = true;
+      return;
+    }
+    end_ = status == Status::kConverged ? End::kGradient : End::kMaxCycles;
   }
-  const bool back = request_.estimator == Estimator::kLeastSquares &&
-                    (best_.worth_returning(tick.exploration.worth_returning) ||
-                     TryAgain(profile, tick.exploration));
+  const bool back = least_squares && (best_.worth_returning(tick.exploration.worth_returning) ||
+                                      TryAgain(profile, tick.exploration));
   if (back || excess_ >= tick.exploration.disc_slack) {
     Enter(Phase::kReturn);
   } else {

@@ -65,10 +65,10 @@ class GuidedSlide {
     kNone,
     kGradient,
     kMaxCycles,
-    kTime,  ///< SlideProfile::explore_s
+    kNoGain,  ///< for exploration.no_gain_s; least squares only
+    kTime,    ///< SlideProfile::explore_s
     kContactLost,
     kObjectMoved,  ///< the others could not carry what the finger dragged
-    kOnSide,       ///< of its link: it could not slide onto its round tip
   };
   struct Request {
     int finger = -1;
@@ -133,11 +133,13 @@ class GuidedSlide {
     v("cycles_before", cycles_before_);
     v("stop", stop_);
     v("slid", slid_);
+    v("was_on_tip", was_on_tip_);
+    v("stays_on_side", stays_on_side_);
     v("no_surface", no_surface_);
     v("slide_began", slide_began_);
     v("slide_ended", slide_ended_);
     v("on_stability", on_stability_);
-    v("end", end_, End::kOnSide);
+    v("end", end_, End::kObjectMoved);
     v("slide_force", slide_force_);
     v("cap_start", cap_start_);
     v("patience", patience_);
@@ -165,6 +167,8 @@ class GuidedSlide {
   /// Towards `to`; true when it is there, or has tried for long enough.
   bool Approach(const ControlTick& tick, const SlideProfile& profile, const Vector3d& to,
                 const SurfaceExploration::Input& input, FingerTask* task);
+  /// What is known of the best contact after this tick.
+  void Remember(const ControlTick& tick, const SurfaceExploration::Input& input);
   void StartAlgorithm(const SurfaceExploration::Input& input,
                       const ExplorationParameters& parameters);
   int MaxCycles(const ExplorationParameters& parameters) const;
@@ -178,6 +182,8 @@ class GuidedSlide {
   int waited_ = 0;                     // ticks in a row with the object too far off its place
   int tries_ = 0, cycles_before_ = 0;  // of Algorithm 1; cycles of the tries before this one
   bool stop_ = false, slid_ = false, no_surface_ = false;
+  bool was_on_tip_ = false;     // while it slid
+  bool stays_on_side_ = false;  // of its link: it tried to slide onto its round tip and could not
   bool slide_began_ = false, slide_ended_ = false, on_stability_ = false;
   End end_ = End::kNone;
   double slide_force_ = 0;  // normal force of this slide [N]

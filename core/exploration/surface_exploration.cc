@@ -29,7 +29,8 @@ Vector3d SurfaceExploration::Free(const Vector3d& vector_W, const Input& input,
 double SurfaceExploration::Depth(const Wall& wall) const {
   double allowed = 0;
   for (const Wall& start : walls_start_)
-    if (!wall.must_leave && start.direction_W.dot(wall.direction_W) > kSameWall)
+    if (wall.kind == Wall::Kind::kMayStay && start.kind == Wall::Kind::kMayStay &&
+        start.direction_W.dot(wall.direction_W) > kSameWall)
       allowed = std::max(allowed, start.depth);
   return wall.depth - allowed;
 }

@@ -20,7 +20,8 @@
 ///    ends runs whose estimate merely crosses zero.
 ///  - line 4: an update also waits until the contact has moved by `min_displacement`.
 ///  - line 4: behind a blind wall no gradient is felt, and the finger leaves it whatever phi does;
-///    where that takes longer than `onto_tip_s` at a time the search ends.
+///    where that takes longer than `onto_tip_s` at a time the status is kBlind, and it
+///    is for the caller to go on without that wall.
 ///  - line 5: R_WCᵀ where the print has T (see SecantEstimator).
 ///  - line 3 and 11: the search is bounded. Beyond `max_excursion` from the start, at a joint limit
 ///    and at another finger (walls) the part of the gradient that points on is removed, from the
@@ -40,17 +41,21 @@ namespace regrasp {
 
 /// A direction in which the finger must not go on.
 struct Wall {
+  /// What a finger does that starts beyond it.
+  enum class Kind : std::uint8_t {
+    kMayStay,
+    kMustLeave,  ///< is pushed out while it explores
+    kBlind,      ///< leaves before it explores: there the contact does not follow it, no gradient
+  };
   Vector3d direction_W = Vector3d::Zero();  ///< unit tangent, into the wall
   double depth = 0;                         ///< how far the contact is beyond it, >= 0 [m]
-  bool must_leave =
-      false;           ///< a finger that starts beyond it is pushed out, else it may stay there
-  bool blind = false;  ///< beyond it the contact does not follow the finger: no gradient is felt
+  Kind kind = Kind::kMayStay;
+  bool blind() const { return kind == Kind::kBlind; }
   template <typename V>
   void Fields(V& v) {
     v("direction_W", direction_W);
     v("depth", depth);
-    v("must_leave", must_leave);
-    v("blind", blind);
+    v("kind", kind, Kind::kBlind);
   }
 };
 

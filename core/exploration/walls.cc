@@ -16,7 +16,7 @@ struct Capsule {
 constexpr double kTouching = 1e-6;   // m: nearer axes have no direction between them
 constexpr double kLeastShare = 0.2;  // of a direction that is tangential: less is no wall
 constexpr double kLeastRate = 0.2;   // what nears, or moves up a side, more slowly is no wall
-constexpr double kOnSide = 5e-4;     // m: farther up a contact is on the side of the link
+constexpr double kUpSide = 5e-4;     // m: farther up a contact is on the side of the link
 
 bool CapsuleOf(const HandModel& hand, const Estimate& estimate, int link, Capsule* capsule) {
   for (const Shape& shape : hand.links[link].shapes) {
@@ -57,16 +57,14 @@ Closest BetweenSegments(const Capsule& one, const Capsule& two) {
   return {one.a + s * d1, two.a + t * d2};
 }
 
-/// `direction`: of contact motion, any length; `depth` [m] along it; `wall`: what else it is. False
-/// where the direction is not along the surface.
+/// `direction`: of contact motion, any length; `depth` [m] along it. False where the direction is
+/// not along the surface.
 bool AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
-             Wall wall = {}) {
+             Wall::Kind kind = Wall::Kind::kMayStay) {
   const Vector3d tangent = TangentPart(direction, normal);
   const double share = tangent.norm() / direction.norm();
   if (!(share > kLeastShare)) return false;
-  wall.direction_W = tangent.normalized();
-  wall.depth = depth / share;
-  walls->push_back(wall);
+  walls->push_back({tangent.normalized(), depth / share, kind});
   return true;
 }
 
@@ -116,14 +114,13 @@ bool AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up
              AngularRate(e.hand, links, joint, tip).cross(d).dot(arm)) *
             e.JointRate(k);
   }
-  return rate.norm() > kLeastRate &&
-         AddWall(rate, up / rate.norm(), n, walls, {.must_leave = true, .blind = true});
+  return rate.norm() > kLeastRate && AddWall(rate, up / rate.norm(), n, walls, Wall::Kind::kBlind);
 }
 
 /// The contact must stay on the round end. facing = d . n is negative there (d: along the link, n:
 /// outward normal); its rate of change with the contact velocity v is
 ///   (w x d) . n + d . v / (R + r),   with w the link's angular velocity.
-void AddTipSide(const Explorer& e, Walls* walls) {
+void AddTipSide(const Explorer& e, OnSide on_side, Walls* walls) {
   Capsule own;
   if (!CapsuleOf(e.hand, e.estimate, e.model.tip_link, &own) || (own.b - own.a).norm() <= 1e-6)
     return;
@@ -131,7 +128,7 @@ void AddTipSide(const Explorer& e, Walls* walls) {
   const Vector3d& n = e.finger.normal_W;
   const double facing = d.dot(n), up = (own.b - e.finger.p_WC).dot(d);
   if (facing <= e.parameters.least_facing) return;
-  if (e.parameters.onto_tip_s > 0 && up > kOnSide && AddSide(e, own, d, up, walls)) return;
+  if (on_side == OnSide::kLeave && up > kUpSide && AddSide(e, own, d, up, walls)) return;
   Vector3d rate = d / (e.estimate.object_scale + own.radius);
   for (std::size_t k = 0; k < e.model.joints.size(); ++k)
     rate += AngularRate(e.hand, e.estimate.kinematics, e.model.joints[k], e.model.tip_link)
@@ -139,7 +136,8 @@ void AddTipSide(const Explorer& e, Walls* walls) {
                 .dot(n) *
             e.JointRate(k);
   // The finger would roll off over the side of its link.
-  AddWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, walls, {.must_leave = true});
+  AddWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, walls,
+          Wall::Kind::kMustLeave);
 }
 
 /// Between a link of this finger and another finger's.
@@ -177,13 +175,13 @@ void AddOtherFingers(const Explorer& e, Walls* walls) {
 }  // namespace
 
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
-               const ExplorationParameters& parameters, Walls* walls) {
+               const ExplorationParameters& parameters, OnSide on_side, Walls* walls) {
   walls->clear();
   const FingerEstimate& f = estimate.fingers[finger];
   const Explorer explorer{hand, estimate,          parameters, finger, hand.fingers[finger],
                           f,    DampedInverse(f.J)};
   AddJointLimits(explorer, walls);
-  AddTipSide(explorer, walls);
+  AddTipSide(explorer, on_side, walls);
   AddOtherFingers(explorer, walls);
 }
 

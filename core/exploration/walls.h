@@ -5,12 +5,17 @@
 
 namespace regrasp {
 
+/// What a finger that touches with the side of its last link is to do.
+enum class OnSide : std::uint8_t {
+  kLeave,  ///< slide onto its round tip: the wall there is blind
+  kStay,   ///< explore there
+};
+
 /// What a sliding finger must not run into: its joint limits, from `limit_margin` on, and the other
-/// fingers, from `clearance` on (last two links of each), and the end of its own round tip; behind
-/// it, on the side of the link, the wall is blind. A wall's direction is the contact motion that
-/// changes its quantity most: for a joint its row of J⁺, for two links the gradient of their
-/// distance through J⁺.
+/// fingers, from `clearance` on (last two links of each), and the end of its own round tip. A
+/// wall's direction is the contact motion that changes its quantity most: for a joint its row of
+/// J⁺, for two links the gradient of their distance through J⁺.
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
-               const ExplorationParameters& parameters, Walls* walls);
+               const ExplorationParameters& parameters, OnSide on_side, Walls* walls);
 
 }  // namespace regrasp

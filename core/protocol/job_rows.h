@@ -114,7 +114,7 @@ inline constexpr std::array kJobRows = {
         "explore", "explore", "improve the grasp by sliding one finger over the surface", kExplore,
         true,
         "job; its record: finger, criterion, estimator, seed, converged, reason (gradient, "
-        "max_cycles, contact_lost, dropped, cancelled, object_moved, on_side; null until it has "
+        "max_cycles, contact_lost, dropped, cancelled, object_moved, no_gain; null until it has "
         "ended), cycles, phi_initial, phi_final, phi_true_initial, phi_true_final "
         "(noise-free, from the simulator, for judging only; null until they are "
         "known), path_length_m"},

@@ -21,7 +21,7 @@ enum class Measure : std::uint8_t { kMinSingularValue, kEpsilon, kSqrtDet, kIsot
 
 /// How dear a measure is, which decides who may ask for it.
 enum class MeasureCost : std::uint8_t {
-  kTick,       ///< microseconds, no allocation: fresh in every tick, exploration may maximise it
+  kTick,       ///< microseconds, no allocation: of the present tick, exploration may maximise it
   kSpread,     ///< spread over ticks by the quality monitor: in every frame, but of the recent past
   kOnRequest,  ///< about a millisecond, allocates: outside the simulation only
 };

@@ -52,14 +52,6 @@ struct StabilityFrame {
   double load_margin = 0;                          ///< rho of all fingers in contact [N]
 
   double of(Measure which) const { return values[static_cast<std::size_t>(which)]; }
-  template <typename V>
-  void Fields(V& v) {
-    v("measure", measure, static_cast<Measure>(kNumFrameMeasures - 1));
-    v("active", active);
-    v("threshold", threshold);
-    v("values", values);
-    v("load_margin", load_margin, kUnbounded);
-  }
 };
 
 /// State of Algorithm 1 while a finger explores.

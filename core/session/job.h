@@ -20,7 +20,7 @@ enum class ExploreReason : std::uint8_t {
   kDropped,
   kCancelled,
   kObjectMoved,  ///< the other fingers could not carry what the finger dragged
-  kOnSide,       ///< the finger could not slide from the side of its link onto the round tip
+  kNoGain,       ///< the best phi met rose too little for exploration.no_gain_s
 };
 
 /// Why a move ended.
@@ -59,7 +59,7 @@ struct ExploreResult {
     v("criterion", criterion, kLastCriterion);
     v("estimator", estimator, Estimator::kLeastSquares);
     v("converged", converged);
-    v("reason", reason, ExploreReason::kOnSide);
+    v("reason", reason, ExploreReason::kNoGain);
     v("cycles", cycles);
     v("phi_initial", phi_initial);
     v("phi_final", phi_final);

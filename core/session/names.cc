@@ -34,10 +34,10 @@ std::string_view Name(ExploreReason reason) {
       return "gradient";
     case ExploreReason::kMaxCycles:
       return "max_cycles";
+    case ExploreReason::kNoGain:
+      return "no_gain";
     case ExploreReason::kObjectMoved:
       return "object_moved";
-    case ExploreReason::kOnSide:
-      return "on_side";
     case ExploreReason::kContactLost:
       return "contact_lost";
     case ExploreReason::kDropped:

@@ -9,35 +9,37 @@
 
 namespace regrasp {
 
-void QualityMonitor::Update(const ControlTick& now) {
-  const Estimate& estimate = now.estimate;
-  const ControlParameters& parameters = now.control;
-  const Grasp grasp = GraspOf(estimate, now.grasp, parameters.friction_estimate);
-  const double scale = estimate.object_scale;
-  MeasureInput input({grasp.data(), grasp.size()}, scale, kEpsilonEdges);
-  for (std::size_t i = 0; i < kNumFrameMeasures; ++i)
-    if (kMeasureTable[i].cost == MeasureCost::kTick)
-      stability_.values[i] = kMeasureTable[i].compute(input);
-  stability_.threshold = parameters.stability_threshold;
+namespace {
 
+Grasp PresentGrasp(const ControlTick& now) {
+  return GraspOf(now.estimate, now.grasp, now.control.friction_estimate);
+}
+
+}  // namespace
+
+void QualityMonitor::Update(const ControlTick& now) {
   if (++tick_ >= std::max(2, Ticks(kMarginInterval, now.dt))) {
     tick_ = 0;
     UpdateMargin(now);
   } else {
-    UpdateEpsilon(grasp, scale, now.dt);
+    UpdateEpsilon(now);
   }
-  SmoothMargins(now.dt / (parameters.margin_filter_s + now.dt));
-
-  stability_.measure = parameters.stability_measure;
-  stability_.active = stability_.of(stability_.measure);
+  SmoothMargins(now.dt / (now.control.margin_filter_s + now.dt));
 }
 
-StabilityFrame QualityMonitor::stability() const {
-  StabilityFrame shown = stability_;
-  if (epsilon_known_) return shown;
-  double& epsilon = shown.values[static_cast<std::size_t>(Measure::kEpsilon)];
-  epsilon = std::numeric_limits<double>::quiet_NaN();
-  if (shown.measure == Measure::kEpsilon) shown.active = epsilon;
+StabilityFrame QualityMonitor::stability(const ControlTick& now) const {
+  StabilityFrame shown;
+  const Grasp grasp = PresentGrasp(now);
+  MeasureInput input({grasp.data(), grasp.size()}, now.estimate.object_scale, kEpsilonEdges);
+  for (std::size_t i = 0; i < kNumFrameMeasures; ++i)
+    if (kMeasureTable[i].cost == MeasureCost::kTick)
+      shown.values[i] = kMeasureTable[i].compute(input);
+  shown.values[static_cast<std::size_t>(Measure::kEpsilon)] =
+      epsilon_known_ ? epsilon_result_ : std::numeric_limits<double>::quiet_NaN();
+  shown.load_margin = load_margin_;
+  shown.threshold = now.control.stability_threshold;
+  shown.measure = now.control.stability_measure;
+  shown.active = shown.of(shown.measure);
   return shown;
 }
 
@@ -49,12 +51,12 @@ void QualityMonitor::UpdateMargin(const ControlTick& now) {
   const double rho =
       LoadMargin({grasp.data(), grasp.size()}, now.control.mass_estimate * now.gravity_W,
                  now.estimate.object_scale, now.control.max_normal_force);
-  (whole ? stability_.load_margin : load_margin_without_[turn_]) = rho;
+  (whole ? load_margin_ : load_margin_without_[turn_]) = rho;
   turn_ = whole ? 0 : turn_ + 1;
 }
 
 void QualityMonitor::SmoothMargins(double gain) {
-  margins_.all += gain * (stability_.load_margin - margins_.all);
+  margins_.all += gain * (load_margin_ - margins_.all);
   for (std::size_t i = 0; i < load_margin_without_.size(); ++i)
     margins_.without[i] += gain * (load_margin_without_[i] - margins_.without[i]);
 }
@@ -69,12 +71,12 @@ void QualityMonitor::RepeatEpsilon() {
   for (int k = 0; k < epsilon_steps_; ++k) epsilon_.Step(kEpsilonFacets);
 }
 
-void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale, double dt) {
+void QualityMonitor::UpdateEpsilon(const ControlTick& now) {
   ++epsilon_ticks_;
   if (!epsilon_begun_) {
-    if (epsilon_ticks_ < Ticks(kEpsilonInterval, dt)) return;
-    epsilon_grasp_ = grasp;
-    epsilon_scale_ = torque_scale;
+    if (epsilon_ticks_ < Ticks(kEpsilonInterval, now.dt)) return;
+    epsilon_grasp_ = PresentGrasp(now);
+    epsilon_scale_ = now.estimate.object_scale;
     epsilon_steps_ = 0;
     epsilon_begun_ = true;
     epsilon_ticks_ = 0;
@@ -83,7 +85,7 @@ void QualityMonitor::UpdateEpsilon(const Grasp& grasp, double torque_scale, doub
   }
   ++epsilon_steps_;
   if (!epsilon_.Step(kEpsilonFacets)) return;
-  stability_.values[static_cast<std::size_t>(Measure::kEpsilon)] = epsilon_.result();
+  epsilon_result_ = epsilon_.result();
   epsilon_known_ = true;
   epsilon_begun_ = false;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 /// Keeps every quality measure of the present grasp fresh without ever standing in the way of a
-/// tick: what is fit for a tick each tick, one load margin every kMarginInterval in turn, epsilon a
-/// few facets at a time in the ticks between. What is done in which tick depends on nothing but the
+/// tick: one load margin every kMarginInterval in turn, epsilon a few facets at a time in the ticks
+/// between, the others when somebody looks. What is done in which tick depends on nothing but the
 /// number of ticks and the grasp.
 
 #include <array>
@@ -22,15 +22,15 @@ class QualityMonitor {
   static constexpr int kMaxEpsilonSteps = 10000;       ///< more are never needed
 
   void Update(const ControlTick& now);
-  /// Epsilon is of the grasp some 0.1 s ago; NaN until it has been computed once.
-  StabilityFrame stability() const;
+  /// Of the present grasp; epsilon of that some 0.1 s ago, NaN until it has been computed once.
+  StabilityFrame stability(const ControlTick& now) const;
   /// Load margins for the controllers: low-passed.
   const LoadMargins& margins() const { return margins_; }
   /// rho of the grasp without this finger, as last computed [N].
   double load_margin_without(int finger) const { return load_margin_without_[finger]; }
   template <typename V>
   void Fields(V& v) {
-    v("stability", stability_);
+    v("load_margin", load_margin_, kUnbounded);
     v("load_margin_without", load_margin_without_, kUnbounded);
     v("margins", margins_);
     v("tick", tick_, FieldRange{0, 1e6});
@@ -41,18 +41,19 @@ class QualityMonitor {
     v("epsilon_steps", epsilon_steps_, FieldRange{0, kMaxEpsilonSteps});
     v("epsilon_ticks", epsilon_ticks_);
     v("epsilon_known", epsilon_known_);
+    v("epsilon_result", epsilon_result_);
     if constexpr (V::kLoads) RepeatEpsilon();
   }
 
  private:
   void UpdateMargin(const ControlTick& now);
   void SmoothMargins(double gain);
-  void UpdateEpsilon(const Grasp& grasp, double torque_scale, double dt);
+  void UpdateEpsilon(const ControlTick& now);
   void BeginEpsilon();
   /// Brings the solver to where a loaded state had it.
   void RepeatEpsilon();
 
-  StabilityFrame stability_;
+  double load_margin_ = 0;  // of the whole grasp [N]
   std::array<double, kMaxFingers> load_margin_without_{};
   LoadMargins margins_;
   int tick_ = 0;  // since the last load margin
@@ -65,6 +66,7 @@ class QualityMonitor {
   int epsilon_steps_ = 0;
   int epsilon_ticks_ = 0;  // since the last beginning
   bool epsilon_known_ = false;
+  double epsilon_result_ = 0;
 };
 
 }  // namespace regrasp

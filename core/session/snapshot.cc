@@ -80,7 +80,7 @@ void Session::Impl::Snapshot(Frame* frame) {
   f.friction = world.friction();
   f.friction_counted = control.friction_estimate;
   f.gravity_W = world.gravity_W();
-  f.stability = monitor.stability();
+  f.stability = monitor.stability(Context().now);
   f.contacts.clear();
   for (const ObjectContact& c : truth.contacts)
     f.contacts.push_back({c.link, c.finger, c.p_WC, c.normal_W, c.force_W, c.depth});

@@ -116,7 +116,7 @@ std::string MeasureSection() {
       "| name | meaning | how often | exploration may maximise it |\n|---|---|---|---|\n";
   for (const MeasureInfo& info : kMeasureTable)
     text += fmt::format("| `{}` | {} | {} | {} |\n", info.name, info.meaning,
-                        info.cost == MeasureCost::kTick     ? "every tick"
+                        info.cost == MeasureCost::kTick     ? "of the tick that is told"
                         : info.cost == MeasureCost::kSpread ? "every 0.1 s or so"
                                                             : "when asked for",
                         info.cost == MeasureCost::kTick ? "yes" : "no: too slow for a tick");

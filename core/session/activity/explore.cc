@@ -11,12 +11,12 @@ ExploreReason ReasonOf(FingerExploration::End end) {
   switch (end) {
     case FingerExploration::End::kGradient:
       return ExploreReason::kGradient;
+    case FingerExploration::End::kNoGain:
+      return ExploreReason::kNoGain;
     case FingerExploration::End::kMaxCycles:
       return ExploreReason::kMaxCycles;
     case FingerExploration::End::kObjectMoved:
       return ExploreReason::kObjectMoved;
-    case FingerExploration::End::kOnSide:
-      return ExploreReason::kOnSide;
     case FingerExploration::End::kContactLost:
       return ExploreReason::kContactLost;
     case FingerExploration::End::kTime:

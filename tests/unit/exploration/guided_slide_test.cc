@@ -169,11 +169,37 @@ TEST_F(SlideTest, FindsTheMaximumAndTakesUpItsLoad) {
   while (!slide_.slide_ended()) Tick();
   EXPECT_LT(FromTop(), 0.5 * first);
   EXPECT_GT(slide_.phi_final(), slide_.phi_initial());
-  EXPECT_TRUE(slide_.end() == End::kGradient || slide_.end() == End::kMaxCycles);
+  EXPECT_TRUE(slide_.end() == End::kGradient || slide_.end() == End::kNoGain);
   ASSERT_TRUE(RunTo(Phase::kDone));
   EXPECT_EQ(tasks_[0].mode, FingerMode::kHold);
   EXPECT_EQ(tasks_[0].cap, control_.max_normal_force);
   EXPECT_FALSE(slide_.no_surface());
+}
+
+// With epsilon 0 no gradient counts as converged.
+TEST_F(SlideTest, EndsWhereNothingIsGainedAnyMore) {
+  parameters_.epsilon = 0;
+  parameters_.no_gain_s = 0.5;
+  Start();
+  ASSERT_TRUE(RunTo(Phase::kExplore));
+  double best = slide_.phi(), gained_s = 0;
+  while (slide_.phase() == Phase::kExplore) {
+    Tick();
+    if (slide_.phi() < parameters_.worth_returning * best) continue;
+    best = slide_.phi();
+    gained_s = slide_.cycles() * kDt;
+  }
+  EXPECT_GT(slide_.cycles() * kDt, gained_s + 0.9 * parameters_.no_gain_s);
+  EXPECT_LT(slide_.cycles() * kDt, gained_s + 2 * parameters_.no_gain_s);
+  while (!slide_.slide_ended()) Tick();
+  EXPECT_EQ(slide_.end(), End::kNoGain);
+  EXPECT_LT(FromTop(), 1e-3);
+
+  parameters_.no_gain_s = 0;
+  Place(StartAt(4e-3));
+  Start();
+  while (!slide_.slide_ended()) Tick();
+  EXPECT_EQ(slide_.end(), End::kMaxCycles);
 }
 
 TEST_F(SlideTest, EndsAfterItsTime) {
@@ -237,9 +263,9 @@ TEST_F(SlideTest, AJointLimitIsAWall) {
   EXPECT_LT(deepest, 1e-3);  // the dither's circle has a radius of 0.5 mm
 }
 
-// On the side of its link, and its joint held by limits on either side: it stays there, feels no
-// gradient, and ends without another try. What phi was there does not count as the best met.
-TEST_F(SlideTest, EndsOnTheSideOfItsLinkThatItCannotLeave) {
+// On the side of its link, and its joint held by a limit that is in the way onto the round tip: it
+// tries to leave for onto_tip_s, then explores where it is.
+TEST_F(SlideTest, ExploresOnTheSideOfItsLinkThatItCannotLeave) {
   const Vector3d p = StartAt(4e-3), n = p.normalized();
   const Vector3d along = TangentPart(Vector3d::UnitX(), n).normalized();
   Shape capsule;
@@ -250,19 +276,30 @@ TEST_F(SlideTest, EndsOnTheSideOfItsLinkThatItCannotLeave) {
   hand_.joints[0].axis_J = Vector3d::UnitZ();
   hand_.joints[0].X_PJ.translation() = Vector3d(0, kLever, 0);
   hand_.joints[0].lower = -1e-3;
-  hand_.joints[0].upper = 1e-3;
   ForwardKinematics(hand_, estimate_.q, &estimate_.kinematics);
   parameters_.onto_tip_s = 0.1;
-  profile_.tries = 3;
   Start();
   ASSERT_TRUE(RunTo(Phase::kExplore));
-  while (!slide_.slide_ended()) {
-    ASSERT_EQ(slide_.phase(), Phase::kExplore);
+  const int begin = ticks_;
+  while (slide_.phase() == Phase::kExplore &&
+         (ticks_ - begin) * kDt < 0.9 * parameters_.onto_tip_s) {
     Tick();
+    ASSERT_EQ((estimate_.fingers[0].p_WC - p).norm(), 0) << "the limit";
   }
-  EXPECT_EQ(slide_.end(), End::kOnSide);
-  EXPECT_NEAR(slide_.cycles() * kDt, parameters_.onto_tip_s, 2 * kDt);
-  EXPECT_NEAR((estimate_.fingers[0].p_WC - p).norm(), 0, 1e-5);
+  ASSERT_EQ(slide_.phase(), Phase::kExplore);
+  while (!slide_.slide_ended()) Tick();
+  EXPECT_TRUE(slide_.end() == End::kGradient || slide_.end() == End::kNoGain);
+  EXPECT_GT(slide_.phi_final(), slide_.phi_initial() + 0.01);
+
+  // All of it counts for the time that a gait gives it.
+  Place(p);
+  ForwardKinematics(hand_, estimate_.q, &estimate_.kinematics);
+  profile_.explore_s = 0.15;
+  Start();
+  ASSERT_TRUE(RunTo(Phase::kExplore));
+  const int start = ticks_;
+  while (slide_.phase() == Phase::kExplore) Tick();
+  EXPECT_NEAR((ticks_ - start) * kDt, profile_.explore_s, 2 * kDt);
 }
 
 TEST_F(SlideTest, StaysInItsDiscAndEndsInside) {

@@ -122,12 +122,12 @@ TEST_F(WallsTest, JointLimitsAreWalls) {
           const Joint& o = hand_.joints[static_cast<std::size_t>(other)];
           q[other] = 0.5 * (o.lower + o.upper);
         }
-        FindWalls(hand_, TouchingEstimate(hand_, q), finger, parameters, &walls);
+        FindWalls(hand_, TouchingEstimate(hand_, q), finger, parameters, OnSide::kLeave, &walls);
         EXPECT_TRUE(walls.empty());
         const double inset = 0.5 * parameters.limit_margin;
         q[j] = upper ? joint.upper - inset : joint.lower + inset;
         const Estimate e = TouchingEstimate(hand_, q);
-        FindWalls(hand_, e, finger, parameters, &walls);
+        FindWalls(hand_, e, finger, parameters, OnSide::kLeave, &walls);
         for (const Wall& wall : walls) {
           ++found;
           const FingerEstimate& f = e.fingers[static_cast<std::size_t>(finger)];
@@ -154,10 +154,10 @@ TEST_F(WallsTest, ANeighbourIsAWallFromTheClearanceOn) {
   parameters.limit_margin = -1;  // joint limits apart
   Walls walls;
   parameters.clearance = 0;  // the posture keeps links 3 mm apart
-  FindWalls(hand_, estimate_, 1, parameters, &walls);
+  FindWalls(hand_, estimate_, 1, parameters, OnSide::kLeave, &walls);
   EXPECT_TRUE(walls.empty());
   parameters.clearance = 0.2;  // everything is near
-  FindWalls(hand_, estimate_, 1, parameters, &walls);
+  FindWalls(hand_, estimate_, 1, parameters, OnSide::kLeave, &walls);
   EXPECT_GT(walls.size(), 8u);  // of four links against each of theirs, less those that part
   EXPECT_FALSE(walls.full());   // room for whoever adds one
   for (const Wall& wall : walls) EXPECT_TRUE(wall.direction_W.allFinite());
@@ -177,7 +177,7 @@ TEST_F(WallsTest, AWallsDepthGrowsByTheWayIntoIt) {
     for (int k = 0; k < 300; ++k) {
       parameters.clearance = 1e-4 * k;
       Walls before, after;
-      FindWalls(hand_, estimate_, finger, parameters, &before);
+      FindWalls(hand_, estimate_, finger, parameters, OnSide::kLeave, &before);
       for (std::size_t w = 0; w < before.size(); ++w) {
         if (before[w].depth > kJustMet) continue;
         const FingerVector dq =
@@ -186,7 +186,7 @@ TEST_F(WallsTest, AWallsDepthGrowsByTheWayIntoIt) {
         for (std::size_t n = 0; n < joints.size(); ++n)
           moved.q[joints[n]] += dq[static_cast<Eigen::Index>(n)];
         ForwardKinematics(hand_, moved.q, &moved.kinematics);
-        FindWalls(hand_, moved, finger, parameters, &after);
+        FindWalls(hand_, moved, finger, parameters, OnSide::kLeave, &after);
         if (after.size() != before.size()) continue;  // another pair has met or parted
         // 5 %: the 1 mm of damping in J⁺ against singular values of 20 mm and more.
         EXPECT_NEAR((after[w].depth - before[w].depth) / kStep, 1, 0.05) << finger << " wall " << w;
@@ -221,10 +221,9 @@ TEST_F(WallsTest, TheSideOfTheLinkIsABlindWallWithTheRoundTipBehindIt) {
     const auto Up = [&] { return (End() - p_WO).dot(Along()); };
     ASSERT_NEAR(Up(), kUp, 1e-9);
     Walls walls;
-    FindWalls(hand_, e, finger, parameters, &walls);
+    FindWalls(hand_, e, finger, parameters, OnSide::kLeave, &walls);
     ASSERT_EQ(walls.size(), 1u);
-    if (!walls[0].blind) continue;  // it cannot move along its link
-    EXPECT_TRUE(walls[0].must_leave);
+    if (!walls[0].blind()) continue;  // it cannot move along its link
     const FingerVector dq =
         f.J.completeOrthogonalDecomposition().solve(-kStep * walls[0].direction_W);
     for (std::size_t k = 0; k < model.joints.size(); ++k)
@@ -234,13 +233,11 @@ TEST_F(WallsTest, TheSideOfTheLinkIsABlindWallWithTheRoundTipBehindIt) {
         << finger;
     ++seen;
     f.p_WC += (kUp - 3e-4) * Along();  // as good as on the round end
-    FindWalls(hand_, e, finger, parameters, &walls);
-    for (const Wall& wall : walls) EXPECT_FALSE(wall.blind);
+    FindWalls(hand_, e, finger, parameters, OnSide::kLeave, &walls);
+    for (const Wall& wall : walls) EXPECT_FALSE(wall.blind());
     f.p_WC -= (kUp - 3e-4) * Along();
-    ExplorationParameters off = parameters;
-    off.onto_tip_s = 0;
-    FindWalls(hand_, e, finger, off, &walls);
-    for (const Wall& wall : walls) EXPECT_FALSE(wall.blind);
+    FindWalls(hand_, e, finger, parameters, OnSide::kStay, &walls);
+    for (const Wall& wall : walls) EXPECT_FALSE(wall.blind());
   }
   EXPECT_GE(seen, 3);
 }

@@ -103,7 +103,7 @@ TEST(SurfaceExploration, ABlindWallIsLeftFirstWhateverPhiDoes) {
       ++blind;
       input.phi = 10 - 1000 * out.dot(finger.p - start);
       const Vector3d into = TangentPart(-out, input.normal_W);
-      input.walls.push_back({into.normalized(), Depth() / into.norm(), true, true});
+      input.walls.push_back({into.normalized(), Depth() / into.norm(), Wall::Kind::kBlind});
       return input;
     };
     algorithm.Start(Sense(), Estimator::kLeastSquares, seed, 0, parameters);
@@ -135,7 +135,7 @@ TEST(SurfaceExploration, LeavingABlindWallTakesItsTimeAndNoMore) {
   const Status status = Explore(&algorithm, &finger, Estimator::kLeastSquares, 1, 2000, parameters,
                                 [](SurfaceExploration::Input* input) {
                                   const Vector3d x = RotationFromZ(input->normal_W).col(0);
-                                  input->walls.push_back({x, 1e-3, true, true});
+                                  input->walls.push_back({x, 1e-3, Wall::Kind::kBlind});
                                   input->walls.push_back({-x, 0});
                                 });
   EXPECT_EQ(status, Status::kBlind);
