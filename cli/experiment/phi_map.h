@@ -21,8 +21,8 @@ struct PhiMap {
 /// ray, its seed is chosen for its direction, and excursion bound, joint limits and other fingers
 /// stop or turn it exactly as they do an exploration. What the rays meet is therefore what an
 /// exploration could reach. Only the slide from the side of a link onto its round tip
-/// (exploration.onto_tip_s) is left out: a ray would get stuck where an exploration may. So one that
-/// does slide there may end above the map's best.
+/// (exploration.onto_tip_s) is left out: a ray would get stuck where an exploration may. So one
+/// that does slide there may end above the map's best.
 ///
 /// The daemon is put back to the state before exploring for each ray, that of a grasp of run `seed`
 /// at noise `noise`. Parameters and noise are as before afterwards, the run is not.
