@@ -20,7 +20,7 @@
 #include <numbers>
 #include <vector>
 
-#include "cli/experiment/start_direction.h"
+#include "cli/experiment/straight_slide.h"
 #include "core/control/estimate.h"
 #include "core/exploration/walls.h"
 #include "core/hand/scenario.h"
@@ -121,9 +121,9 @@ bool Grasped(Session* session) {
 
 /// Slides along one ray from the grasp of this configuration.
 std::vector<Sample> Slide(SessionConfig config, int finger, double angle) {
-  config.parameters.exploration.update_cycles = 10000;
-  config.parameters.exploration.eta = 0.01;
-  config.parameters.exploration.onto_tip_s = 0;
+  for (const auto& [name, value] : cli::kStraightSlide)
+    SetByUser(ParameterTable()[static_cast<std::size_t>(FindParameter(name))],
+              Vector3d(value, 0, 0), &config.parameters);
   const double tip_radius = config.model.hand.fingers[static_cast<std::size_t>(finger)].tip_radius;
   Session session(std::move(config));
   std::vector<Sample> samples;

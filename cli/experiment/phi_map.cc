@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "cli/client/errors.h"
-#include "cli/experiment/start_direction.h"
+#include "cli/experiment/straight_slide.h"
 #include "cli/print/print.h"
 
 namespace regrasp::cli {
@@ -21,12 +21,6 @@ constexpr double kStill_m = 4e-4;
 constexpr std::size_t kStillSamples = 6;
 constexpr std::int64_t kTransferLimit = 5000;  // load transfer before and after [ticks]
 constexpr double kTick_s = 1e-3;
-
-/// Parameters that turn Algorithm 1 into a straight slide: no update, as fast as is allowed, and
-/// from the side of a link along the ray too, where an exploration would leave it first.
-constexpr std::array<std::pair<const char*, double>, 3> kStraight = {
-    std::pair{"exploration.update_cycles", 10000.0}, std::pair{"exploration.eta", 0.01},
-    std::pair{"exploration.onto_tip_s", 0.0}};
 
 std::array<double, 3> Point(const Json& json) { return {json.at(0), json.at(1), json.at(2)}; }
 
@@ -85,8 +79,9 @@ PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed
   const auto parameter = [&](const char* name) {
     return daemon->Call("param.get", {{"name", name}}).at("value");
   };
-  std::array<Json, kStraight.size()> before;
-  for (std::size_t i = 0; i < kStraight.size(); ++i) before[i] = parameter(kStraight[i].first);
+  std::array<Json, kStraightSlide.size()> before;
+  for (std::size_t i = 0; i < kStraightSlide.size(); ++i)
+    before[i] = parameter(kStraightSlide[i].first);
   const double way_s = parameter("exploration.max_excursion").get<double>() /
                        parameter("exploration.speed_max").get<double>();
   const int cycles = static_cast<int>(std::ceil(kTimeShare * way_s / kTick_s));
@@ -94,13 +89,13 @@ PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed
     daemon->Call("noise.set", {{"preset", noise}});
     if (!Done(daemon->Grasp(seed))) break;
     daemon->Call("noise.set", {{"preset", "off"}});
-    for (const auto& [name, value] : kStraight)
+    for (const auto& [name, value] : kStraightSlide)
       daemon->Call("param.set", {{"name", name}, {"value", value}});
     Ray(daemon, finger, criterion, ray, SeedOfDirection(2 * std::numbers::pi * ray / rays), cycles,
         &map);
     daemon->LeaveFault();
-    for (std::size_t i = 0; i < kStraight.size(); ++i)
-      daemon->Call("param.set", {{"name", kStraight[i].first}, {"value", before[i]}});
+    for (std::size_t i = 0; i < kStraightSlide.size(); ++i)
+      daemon->Call("param.set", {{"name", kStraightSlide[i].first}, {"value", before[i]}});
   }
   daemon->LeaveFault();
   daemon->Call("noise.set", {{"preset", noise}});

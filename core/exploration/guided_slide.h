@@ -182,7 +182,7 @@ class GuidedSlide {
   int waited_ = 0;                     // ticks in a row with the object too far off its place
   int tries_ = 0, cycles_before_ = 0;  // of Algorithm 1; cycles of the tries before this one
   bool stop_ = false, slid_ = false, no_surface_ = false;
-  bool was_on_tip_ = false;     // while it slid
+  bool was_on_tip_ = false;     // while it slid, or explores on its side: has a best contact
   bool stays_on_side_ = false;  // of its link: it tried to slide onto its round tip and could not
   bool slide_began_ = false, slide_ended_ = false, on_stability_ = false;
   End end_ = End::kNone;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/experiment/start_direction.h"
+#include "cli/experiment/straight_slide.h"
 #include "cli/experiment/statistics.h"
 #include "core/exploration/surface_exploration.h"
 

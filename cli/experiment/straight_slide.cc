@@ -1,4 +1,4 @@
-#include "cli/experiment/start_direction.h"
+#include "cli/experiment/straight_slide.h"
 
 #include <cmath>
 #include <numbers>
