@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "cli/experiment/straight_slide.h"
 #include "cli/experiment/statistics.h"
+#include "cli/experiment/straight_slide.h"
 #include "core/exploration/surface_exploration.h"
 
 namespace regrasp::cli {
