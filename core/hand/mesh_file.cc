@@ -144,12 +144,12 @@ void SendMesh(int out, const RawMesh& mesh) {
   Send(out, mesh.triangles.data(), mesh.triangles.size() * sizeof(Eigen::Vector3i));
 }
 
-void ReadByAssimp(int out, const std::string& file, const std::string& suffix,
-                  const MeshLimits& limits) {
+/// `text`: what shall be read instead of the file, or "".
+void ReadByAssimp(int out, const std::string& file, const std::string& text,
+                  const std::string& suffix, const MeshLimits& limits) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_DropNormals;
-  const std::string text = TextForAssimp(file, suffix);
   const aiScene* scene = text.empty() ? importer.ReadFile(file, kSteps)
                                       : importer.ReadFileFromMemory(text.data(), text.size(),
                                                                     kSteps, suffix.c_str() + 1);
@@ -157,6 +157,14 @@ void ReadByAssimp(int out, const std::string& file, const std::string& suffix,
     SendError(out, importer.GetErrorString());
   else
     SendScene(out, *scene, limits);
+}
+
+void SendPly(int out, const std::string& file, const MeshLimits& limits) {
+  const PolygonMesh read = ReadPly(file, limits);
+  if (read.polygons.empty())
+    SendMesh(out, read.mesh);
+  else
+    ReadByAssimp(out, file, ObjText(read), ".obj", limits);
 }
 
 void LimitChild(const MeshLimits& limits) {
@@ -189,11 +197,11 @@ void LimitChild(const MeshLimits& limits) {
   ::close_range(4, ~0U, 0);
   try {
     if (kind.suffix == ".ply")
-      SendMesh(3, ReadPly(file, limits));
+      SendPly(3, file, limits);
     else if (kind.stl_rest)
       SendMesh(3, ReadBinaryStl(file, limits));
     else
-      ReadByAssimp(3, file, kind.suffix, limits);
+      ReadByAssimp(3, file, TextForAssimp(file, kind.suffix), kind.suffix, limits);
   } catch (const std::bad_alloc&) {
     SendError(3, fmt::format("needs more than {} MiB of memory", limits.memory_bytes >> 20));
   } catch (const std::exception& error) {

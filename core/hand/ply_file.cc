@@ -14,6 +14,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/hand/ply_header.h"
 #include "core/hand/urdf_values.h"
@@ -30,7 +31,7 @@ class Reader {
     text_.assign(std::istreambuf_iterator<char>(in), {});
   }
 
-  RawMesh Read() {
+  PolygonMesh Read() {
     header_ = ReadPlyHeader(text_, limits_);
     at_ = header_.bytes;
     for (const PlyElement& element : header_.elements) {
@@ -43,7 +44,8 @@ class Reader {
           ReadEntry(element.name == "face");
       }
     }
-    return std::move(mesh_);
+    CheckPolygons();
+    return std::move(read_);
   }
 
  private:
@@ -107,29 +109,42 @@ class Reader {
       }
     }
     if (!v.allFinite()) FailHere("x, y and z must be finite numbers");
-    mesh_.vertices.push_back(v);
+    read_.mesh.vertices.push_back(v);
   }
 
   void ReadEntry(bool face) {
     for (const PlyProperty& property : element_->properties) {
-      const bool corners = face && property.length &&
-                           (property.name == "vertex_indices" || property.name == "vertex_index");
-      std::size_t values = property.length ? Length(property) : 1;
-      Eigen::Vector3i t = Eigen::Vector3i::Zero();
+      const bool is_corners =
+          face && property.length &&
+          (property.name == "vertex_indices" || property.name == "vertex_index");
+      const std::size_t values = property.length ? Length(property) : 1;
+      corners_.clear();
       for (std::size_t k = 0; k < values; ++k) {
         const double value = Next(*property.type);
-        if (!corners) continue;
+        if (!is_corners) continue;
         if (!(value >= 0 && value <= 2e9) || value != std::floor(value))
           FailHere(fmt::format("the corner {:g}; must be the number of a vertex", value));
-        t[1] = t[2];
-        t[2] = static_cast<int>(value);
-        if (k == 0) t[0] = t[2];
-        if (k < 2) continue;
-        if (mesh_.triangles.size() >= limits_.triangles)
-          Fail(fmt::format("more than {} triangles", limits_.triangles));
-        mesh_.triangles.push_back(t);
+        corners_.push_back(static_cast<int>(value));
       }
+      if (corners_.size() < 3) continue;  // points and lines enclose nothing
+      triangles_ += corners_.size() - 2;
+      if (triangles_ > limits_.triangles)
+        Fail(fmt::format("more than {} triangles", limits_.triangles));
+      if (corners_.size() == 3)
+        read_.mesh.triangles.emplace_back(corners_[0], corners_[1], corners_[2]);
+      else
+        read_.polygons.push_back(corners_);
     }
+  }
+
+  /// Their vertices can stand after them in the file.
+  void CheckPolygons() const {
+    const std::size_t vertices = read_.mesh.vertices.size();
+    for (const std::vector<int>& polygon : read_.polygons)
+      for (const int corner : polygon)
+        if (static_cast<std::size_t>(corner) >= vertices)
+          Fail(fmt::format("a face of {} corners has the corner {}; there are {} vertices",
+                           polygon.size(), corner, vertices));
   }
 
   const MeshLimits& limits_;
@@ -138,13 +153,30 @@ class Reader {
   PlyHeader header_;
   const PlyElement* element_ = nullptr;  // that is read
   std::uint64_t entry_ = 0;
-  RawMesh mesh_;
+  PolygonMesh read_;
+  std::vector<int> corners_;   // of the list that is read
+  std::size_t triangles_ = 0;  // that what was read is cut into
 };
 
 }  // namespace
 
-RawMesh ReadPly(const std::filesystem::path& file, const MeshLimits& limits) {
+PolygonMesh ReadPly(const std::filesystem::path& file, const MeshLimits& limits) {
   return Reader(file, limits).Read();
+}
+
+std::string ObjText(const PolygonMesh& mesh) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (const Eigen::Vector3f& v : mesh.mesh.vertices)
+    fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", v.x(), v.y(), v.z());
+  const auto add = [&](const auto& corners) {
+    text += 'f';
+    for (const int corner : corners) fmt::format_to(out, " {}", std::int64_t{corner} + 1);
+    text += '\n';
+  };
+  for (const Eigen::Vector3i& triangle : mesh.mesh.triangles) add(triangle);
+  for (const std::vector<int>& polygon : mesh.polygons) add(polygon);
+  return text;
 }
 
 }  // namespace regrasp

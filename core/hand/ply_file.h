@@ -5,16 +5,26 @@
 /// one, and does not come back from a header without an end.
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/hand/mesh_file.h"
 
 namespace regrasp {
 
-/// Vertices (properties x, y, z) and faces (a list vertex_indices or vertex_index), which are cut
-/// into triangles from their first corner; every other property and element is passed over. Throws
-/// ModelError, without the file's name: a header that is none or claims more than the file can hold
-/// or `limits` allow, a value that is no number. Corners beyond the last vertex are left to
-/// DecodeMesh.
-RawMesh ReadPly(const std::filesystem::path& file, const MeshLimits& limits);
+/// Faces of any number of corners, as a PLY file has them.
+struct PolygonMesh {
+  RawMesh mesh;                            ///< the vertices, and the faces of three corners
+  std::vector<std::vector<int>> polygons;  ///< those of more; indices into `mesh.vertices`
+};
+
+/// Vertices (properties x, y, z) and faces (a list vertex_indices or vertex_index); every other
+/// property and element is passed over. Throws ModelError, without the file's name: a header that
+/// is none or claims more than the file can hold or `limits` allow, a value that is no number, a
+/// polygon with a corner beyond the last vertex. Those of triangles are left to DecodeMesh.
+PolygonMesh ReadPly(const std::filesystem::path& file, const MeshLimits& limits);
+
+/// The same mesh as an OBJ file: what cuts polygons into triangles, concave ones too, reads that.
+std::string ObjText(const PolygonMesh& mesh);
 
 }  // namespace regrasp

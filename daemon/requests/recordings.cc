@@ -43,6 +43,32 @@ Json FileJson(const fs::path& path, const fs::path& recording) {
   return json;
 }
 
+/// Ends the recording and answers with what the file has.
+void FinishRecording(Service& service, const Done& done) {
+  const std::shared_ptr<Recorder> recorder = service.SetRecorder(nullptr);
+  if (!recorder) {  // another client was faster
+    const RpcError error{
+        ErrorCode::kBadState, "nothing is being recorded", "regrasp record start", {}, {}};
+    return done({}, &error);
+  }
+  const auto finish = [recorder, done] {
+    const Recorder::Numbers numbers = recorder->numbers();
+    if (!numbers.failure.empty()) {
+      const RpcError error{ErrorCode::kIo, numbers.failure, "regrasp record list", {}, {}};
+      return done({}, &error);
+    }
+    done({{"file", recorder->path().filename().string()},
+          {"path", recorder->path().string()},
+          {"messages", numbers.messages},
+          {"bytes", numbers.bytes},
+          {"dropped", numbers.dropped}},
+         nullptr);
+  };
+  if (service.host().Background([recorder] { recorder->Finish(); }, finish)) return;
+  recorder->Finish();
+  finish();
+}
+
 }  // namespace
 
 Outcome RecordStart(Service& service, const Params& params, Client&) {
@@ -82,31 +108,10 @@ Outcome RecordStop(Service& service, const Params&, Client&) {
     throw RpcException(ErrorCode::kBadState, "nothing is being recorded", "regrasp record start");
   Outcome outcome;
   outcome.begin = [&service](Done done) {
-    // What has happened until now belongs to it.
-    service.Mark(ControlRequest::Part::kNothing, [&service, done](const JournalNews&) {
-      const std::shared_ptr<Recorder> recorder = service.SetRecorder(nullptr);
-      if (!recorder) {  // another client was faster
-        const RpcError error{
-            ErrorCode::kBadState, "nothing is being recorded", "regrasp record start", {}, {}};
-        return done({}, &error);
-      }
-      const auto finish = [recorder, done] {
-        const Recorder::Numbers numbers = recorder->numbers();
-        if (!numbers.failure.empty()) {
-          const RpcError error{ErrorCode::kIo, numbers.failure, "regrasp record list", {}, {}};
-          return done({}, &error);
-        }
-        done({{"file", recorder->path().filename().string()},
-              {"path", recorder->path().string()},
-              {"messages", numbers.messages},
-              {"bytes", numbers.bytes},
-              {"dropped", numbers.dropped}},
-             nullptr);
-      };
-      if (!service.host().Background([recorder] { recorder->Finish(); }, finish)) {
-        recorder->Finish();
-        finish();
-      }
+    // What has happened until now belongs to it: commands, which are here with the mark, and the
+    // frames and events before it, which are shown later.
+    service.Mark(ControlRequest::Part::kNothing, [&service, done](const JournalNews& mark) {
+      service.AfterTaken(mark.request, [&service, done] { FinishRecording(service, done); });
     });
   };
   return outcome;

@@ -49,7 +49,7 @@ void Read(char format, const std::filesystem::path& file, std::size_t size) {
     Require(mesh.vertices.size() <= Limits().vertices &&
             mesh.triangles.size() <= Limits().triangles);
   };
-  if (format == 'p') return in_process(ReadPly(file, Limits()));
+  if (format == 'p') return in_process(ReadPly(file, Limits()).mesh);
   if (format == 's') {
     if (BinaryStlRest(file, size)) in_process(ReadBinaryStl(file, Limits()));
     return;

@@ -140,5 +140,27 @@ TEST_F(Recordings, SampleAtTheRateThatWasAskedFor) {
   EXPECT_EQ(counts["gait"], 0);  // nothing rotates
 }
 
+TEST_F(Recordings, HoldEverythingUpToTheirStopAlsoWhileTheClockRuns) {
+  client->Result("resume");
+  for (int i = 0; i < 20; ++i) {
+    const std::string name = "run" + std::to_string(i);
+    const Json started = client->Result("record.start");
+    client->Result("noise.set", {{"preset", "coarse"}});
+    // One after the other in the same read: nothing comes between them.
+    client->Send(Json{{"jsonrpc", "2.0"},
+                      {"id", 1000},
+                      {"method", "checkpoint.save"},
+                      {"params", {{"name", name}}}}
+                     .dump() +
+                 "\n" + Json{{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "record.stop"}}.dump() +
+                 "\n");
+    const Json saved = client->Receive(), stopped = client->Receive();
+    ASSERT_TRUE(saved.contains("result") && stopped.contains("result")) << saved << stopped;
+    const run::RunFile file = run::ReadRunFile(started["path"]);
+    // A frame is made every 10 ticks.
+    EXPECT_GT(file.segments.at(0).last_tick(), saved["result"]["tick"].get<std::int64_t>() - 10);
+  }
+}
+
 }  // namespace
 }  // namespace regrasp::test

@@ -190,6 +190,39 @@ TEST_F(WildTest, BinaryPlyThatBeginsLikeALine) {
   EXPECT_NEAR(ObjectSolid(Load("<mesh filename=\"line.ply\"/>")).volume, 0.064e-3 / 6, 1e-10);
 }
 
+// An L of 40 x 40 mm with arms of 10 mm, its two ends as one hexagon each: not every corner of it
+// sees all the others. Its faces stand before its vertices.
+TEST_F(WildTest, PlyWithConcavePolygons) {
+  const std::vector<std::array<double, 2>> outline = {{0, 0},   {40, 0},  {40, 10},
+                                                      {10, 10}, {10, 40}, {0, 40}};
+  const std::string mesh = "<mesh filename=\"ell.ply\" scale=\"0.001 0.001 0.001\"/>";
+  for (int first = 0; first < 6; ++first) {
+    SCOPED_TRACE(first);
+    std::string vertices, faces, low = "6", high = "6";
+    for (int i = 0; i < 6; ++i) {
+      const auto [x, y] = outline[(first + i) % 6];
+      vertices += fmt::format("{} {} 0\n{} {} 20\n", x, y, x, y);
+      const int j = (i + 1) % 6;
+      faces += fmt::format("4 {} {} {} {}\n", 2 * i, 2 * j, 2 * j + 1, 2 * i + 1);
+      high += fmt::format(" {}", 2 * i + 1);
+      low += fmt::format(" {}", 2 * (5 - i));
+    }
+    Write("objects/ell.ply",
+          "ply\nformat ascii 1.0\nelement face 8\nproperty list uchar int vertex_indices\n"
+          "element vertex 12\nproperty float x\nproperty float y\nproperty float z\n"
+          "end_header\n" +
+              faces + low + "\n" + high + "\n" + vertices);
+    const auto solid = ObjectSolid(Load(mesh));
+    EXPECT_NEAR(solid.volume, 700e-6 * 0.02, 1e-9);
+  }
+  Write("objects/ell.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 3\n");
+  EXPECT_NE(Refusal(mesh).find("a face of 4 corners has the corner 3; there are 3 vertices"),
+            std::string::npos);
+}
+
 TEST_F(WildTest, WhatAMeshFileClaimsIsHeldAgainstItsSize) {
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
