@@ -4,11 +4,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "cli/run/replay_run.h"
 #include "core/journal/journal_text.h"
 #include "core/mcap/mcap_reader.h"
-#include "tests/protocol/daemon_fixture.h"
+#include "tests/protocol/service_fixture.h"
 
 namespace regrasp::test {
 namespace {
@@ -140,26 +141,16 @@ TEST_F(Recordings, SampleAtTheRateThatWasAskedFor) {
   EXPECT_EQ(counts["gait"], 0);  // nothing rotates
 }
 
-TEST_F(Recordings, HoldEverythingUpToTheirStopAlsoWhileTheClockRuns) {
-  client->Result("resume");
-  for (int i = 0; i < 20; ++i) {
-    const std::string name = "run" + std::to_string(i);
-    const Json started = client->Result("record.start");
-    client->Result("noise.set", {{"preset", "coarse"}});
-    // One after the other in the same read: nothing comes between them.
-    client->Send(Json{{"jsonrpc", "2.0"},
-                      {"id", 1000},
-                      {"method", "checkpoint.save"},
-                      {"params", {{"name", name}}}}
-                     .dump() +
-                 "\n" + Json{{"jsonrpc", "2.0"}, {"id", 1001}, {"method", "record.stop"}}.dump() +
-                 "\n");
-    const Json saved = client->Receive(), stopped = client->Receive();
-    ASSERT_TRUE(saved.contains("result") && stopped.contains("result")) << saved << stopped;
-    const run::RunFile file = run::ReadRunFile(started["path"]);
-    // A frame is made every 10 ticks.
-    EXPECT_GT(file.segments.at(0).last_tick(), saved["result"]["tick"].get<std::int64_t>() - 10);
-  }
+// The frames come with the mark of the stop, and are shown after it.
+TEST_F(ServiceTest, ARecordingHoldsWhatNobodyHasBeenShownYet) {
+  Call("record.start", {{"file", "a.mcap"}});
+  const std::uint64_t pulse = service.control().pulse();
+  Call("step", {{"ticks", 500}});
+  while (service.control().pulse() < pulse + 500) std::this_thread::yield();
+  Call("record.stop", JsonIn::object());
+  DrainUntil([&] { return !service.recorder(); });
+  const run::RunFile file = run::ReadRunFile(directory / "out/a.mcap");
+  EXPECT_GE(file.segments.at(0).last_tick(), 400);  // the thread also counts a few times it woke
 }
 
 }  // namespace
