@@ -60,9 +60,9 @@ struct Wall {
 };
 
 /// Room for every wall that a finger can have at once: two limits per joint, the end of its round
-/// tip, two links against two of every other finger, and one for who bounds the search from
-/// outside.
-inline constexpr std::size_t kMaxWalls = 2 * kMaxFingerJoints + 1 + 4 * (kMaxFingers - 1) + 1;
+/// tip, the rest of its last link against the object, two links against two of every other finger,
+/// and one for who bounds the search from outside.
+inline constexpr std::size_t kMaxWalls = 2 * kMaxFingerJoints + 2 + 4 * (kMaxFingers - 1) + 1;
 using Walls = FixedVector<Wall, kMaxWalls>;
 
 class SurfaceExploration {

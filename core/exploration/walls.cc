@@ -57,6 +57,21 @@ Closest BetweenSegments(const Capsule& one, const Capsule& two) {
   return {one.a + s * d1, two.a + t * d2};
 }
 
+/// The point of a capsule's axis, or of a box, that is nearest to `p_W`.
+struct Nearest {
+  Vector3d on_W;
+  double radius = 0;  ///< of what is about it
+};
+Nearest NearestOf(const Shape& shape, const Isometry3d& X_WL, const Vector3d& p_W) {
+  if (shape.kind == Shape::Kind::kCapsule) {
+    const Capsule own{X_WL * shape.a_L, X_WL * shape.b_L, shape.radius};
+    return {BetweenSegments(own, {p_W, p_W}).on_one, shape.radius};
+  }
+  const Isometry3d X_WB = X_WL * shape.X_LB;
+  const Vector3d p_B = X_WB.inverse() * p_W;
+  return {X_WB * p_B.cwiseMax(-shape.half_extents).cwiseMin(shape.half_extents).eval()};
+}
+
 /// `direction`: of contact motion, any length; `depth` [m] along it. False where the direction is
 /// not along the surface.
 bool AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
@@ -140,23 +155,50 @@ void AddTipSide(const Explorer& e, OnSide on_side, Walls* walls) {
           Wall::Kind::kMustLeave);
 }
 
+/// Between `on_W`, a point of a link of this finger, and one `between` away that rests. `depth`:
+/// how much too near they are [m].
+void AddNear(const Explorer& e, int own_link, const Vector3d& on_W, const Vector3d& between,
+             double depth, Walls* walls) {
+  const double distance = between.norm();
+  if (depth <= 0 || distance < kTouching) return;
+  // How fast they near each other, per contact velocity: the joints that move the own link, with
+  // q' = J⁺ v.
+  Vector3d rate = Vector3d::Zero();
+  for (std::size_t k = 0; k < e.model.joints.size(); ++k) {
+    const Vector3d v = PointRate(e.hand, e.estimate.kinematics, e.model.joints[k], own_link, on_W);
+    rate += v.dot(between) / distance * e.JointRate(k);
+  }
+  if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), e.finger.normal_W, walls);
+}
+
 /// Between a link of this finger and another finger's.
 void AddLinks(const Explorer& e, int own_link, const Capsule& own, const Capsule& other,
               Walls* walls) {
   const Closest closest = BetweenSegments(own, other);
   const Vector3d between = closest.on_two - closest.on_one;
-  const double distance = between.norm();
-  const double depth = own.radius + other.radius + e.parameters.clearance - distance;
-  if (depth <= 0 || distance < kTouching) return;
-  // How fast the links near each other, per contact velocity: the joints that move the own link,
-  // with q' = J⁺ v.
-  Vector3d rate = Vector3d::Zero();
-  for (std::size_t k = 0; k < e.model.joints.size(); ++k) {
-    const Vector3d v =
-        PointRate(e.hand, e.estimate.kinematics, e.model.joints[k], own_link, closest.on_one);
-    rate += v.dot(between) / distance * e.JointRate(k);
+  AddNear(e, own_link, closest.on_one, between,
+          own.radius + other.radius + e.parameters.clearance - between.norm(), walls);
+}
+
+/// Between the object, a ball about its centre for this, and what the last link has beside its
+/// fingertip: what touches there is not felt.
+void AddBody(const Explorer& e, Walls* walls) {
+  const double radius = e.estimate.object_scale;
+  const Vector3d centre = e.finger.p_WC - radius * e.finger.normal_W;
+  const Isometry3d& X_WL = e.estimate.kinematics.X_WL[e.model.tip_link];
+  double most = 0;
+  Vector3d on_W, between;
+  for (const Shape& shape : e.hand.links[e.model.tip_link].shapes) {
+    if (&shape == &e.hand.links[e.model.tip_link].shapes.front()) continue;  // the fingertip
+    const Nearest nearest = NearestOf(shape, X_WL, centre);
+    const Vector3d to_centre = centre - nearest.on_W;
+    const double depth = nearest.radius + radius + e.parameters.clearance - to_centre.norm();
+    if (depth <= most) continue;
+    most = depth;
+    on_W = nearest.on_W;
+    between = to_centre;
   }
-  if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), e.finger.normal_W, walls);
+  if (most > 0) AddNear(e, e.model.tip_link, on_W, between, most, walls);
 }
 
 void AddOtherFingers(const Explorer& e, Walls* walls) {
@@ -182,6 +224,7 @@ void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
                           f,    DampedInverse(f.J)};
   AddJointLimits(explorer, walls);
   AddTipSide(explorer, on_side, walls);
+  AddBody(explorer, walls);
   AddOtherFingers(explorer, walls);
 }
 

@@ -11,10 +11,11 @@ enum class OnSide : std::uint8_t {
   kStay,   ///< explore there
 };
 
-/// What a sliding finger must not run into: its joint limits, from `limit_margin` on, and the other
-/// fingers, from `clearance` on (last two links of each), and the end of its own round tip. A
-/// wall's direction is the contact motion that changes its quantity most: for a joint its row of
-/// J⁺, for two links the gradient of their distance through J⁺.
+/// What a sliding finger must not run into: its joint limits, from `limit_margin` on, the other
+/// fingers, from `clearance` on (last two links of each), the object, from there on, with what its
+/// last link has beside the fingertip, and the end of its own round tip. A wall's direction is the
+/// contact motion that changes its quantity most: for a joint its row of J⁺, for two links the
+/// gradient of their distance through J⁺.
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
                const ExplorationParameters& parameters, OnSide on_side, Walls* walls);
 
