@@ -25,7 +25,7 @@ constexpr const char* kDeviations = R"(
 | line 11 | a displacement η ∇̃φ | a velocity, held to {exploration.speed_min*1e3} … {exploration.speed_max*1e3} mm/s: slower, friction stops the finger; with least squares the dither keeps it moving, and the least speed falls with a gradient below ε. η = {exploration.eta} m²/s is ours |
 | Alg. 1 | reference frame r | W, the fixed palm's frame |
 | Alg. 1 | φ in no unit | manipulability sqrt(det J Jᵀ) in 1e-4 m³, so that φ is of order 1 |
-| Alg. 1 | no bound | at most {exploration.max_excursion*1e3} mm from the start; joint limits, the other fingers and the end of the round fingertip are walls; a finger on the side of its last link, where the contact does not follow it, slides onto the round end first; with least squares the search also ends after {exploration.no_gain_s} s without a gain, and there are a return to the best φ met and up to three tries |
+| Alg. 1 | no bound | at most {exploration.max_excursion*1e3} mm from the start; joint limits, the other fingers, the end of the round fingertip and the object beside it are walls; a finger on the side of its last link, where the contact does not follow it, slides onto the round end first; with least squares the search also ends after {exploration.no_gain_s} s without a gain, and there are a return to the best φ met and up to three tries |
 | Sec. II | grasp stability, no formula | smallest singular value of the grasp matrix, torques over the mean contact distance; others can be chosen |
 | Sec. II | a minimal threshold | {control.stability_threshold}, ours; back to manipulability 5 % above it |
 | Fig. 2 | linear sum, no weights | φ + {exploration.stability_weight} σ_min |

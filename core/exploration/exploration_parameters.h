@@ -26,11 +26,12 @@ struct ExplorationParameters {
   double least_facing =
       -0.05;  ///< link axis . outward normal: above it the contact nears the side of the tip
   double onto_tip_s = 3.0;  ///< so long at most to slide from the side of a link onto its round tip
-  double clearance = 0.002;                   ///< a link of another finger this near is a wall [m]
-  double wall_return = 5.0;                   ///< speed back from behind a wall, per depth [1/s]
-  double dither_speed = 0.008;                ///< least_squares: circular dither [m/s]
-  double dither_hz = 3.0;                     ///< least_squares: its frequency
-  double forgetting = 0.80;                   ///< least_squares: weight of the past per update
+  double clearance = 0.002;     ///< a link of another finger, or the rest of the last link and the
+                                ///< object, this near are walls [m]
+  double wall_return = 5.0;     ///< speed back from behind a wall, per depth [1/s]
+  double dither_speed = 0.008;  ///< least_squares: circular dither [m/s]
+  double dither_hz = 3.0;       ///< least_squares: its frequency
+  double forgetting = 0.80;     ///< least_squares: weight of the past per update
   double stability_weight = 1.0;              ///< combined: weight of stability in the linear sum
   Vector3d turn_axis_W = -Vector3d::UnitZ();  ///< reserve: axis of the coming turn, sense included
   double reserve_manipulability = 0.1;  ///< reserve: rad per manipulability that count with it

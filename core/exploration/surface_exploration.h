@@ -79,7 +79,7 @@ class SurfaceExploration {
     Vector3d p_WC = Vector3d::Zero();       ///< sensed contact point [m]
     Vector3d normal_W = Vector3d::UnitZ();  ///< sensed outward object normal
     double phi = 0;                         ///< objective, of order 1
-    Walls walls;                            ///< joint limits, other fingers
+    Walls walls;                            ///< what FindWalls() finds
   };
 
   /// Lines 1 and 2. `max_cycles`: N_max; 0 takes the parameter's.

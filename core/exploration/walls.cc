@@ -1,6 +1,7 @@
 #include "core/exploration/walls.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/hand/damped_inverse.h"
 
@@ -72,15 +73,19 @@ Nearest NearestOf(const Shape& shape, const Isometry3d& X_WL, const Vector3d& p_
   return {X_WB * p_B.cwiseMax(-shape.half_extents).cwiseMin(shape.half_extents).eval()};
 }
 
-/// `direction`: of contact motion, any length; `depth` [m] along it. False where the direction is
+/// `direction`: of contact motion, any length; `depth` [m] along it. None where the direction is
 /// not along the surface.
-bool AddWall(const Vector3d& direction, double depth, const Vector3d& normal, Walls* walls,
-             Wall::Kind kind = Wall::Kind::kMayStay) {
+std::optional<Wall> MakeWall(const Vector3d& direction, double depth, const Vector3d& normal,
+                             Wall::Kind kind = Wall::Kind::kMayStay) {
   const Vector3d tangent = TangentPart(direction, normal);
   const double share = tangent.norm() / direction.norm();
-  if (!(share > kLeastShare)) return false;
-  walls->push_back({tangent.normalized(), depth / share, kind});
-  return true;
+  if (!(share > kLeastShare)) return {};
+  return Wall{tangent.normalized(), depth / share, kind};
+}
+/// False where there is none.
+bool AddWall(const std::optional<Wall>& wall, Walls* walls) {
+  if (wall) walls->push_back(*wall);
+  return wall.has_value();
 }
 
 /// One finger among the others.
@@ -108,8 +113,8 @@ void AddJointLimits(const Explorer& e, Walls* walls) {
     const Vector3d row = e.JointRate(k);
     const double above = q - (joint.upper - e.parameters.limit_margin);
     const double below = joint.lower + e.parameters.limit_margin - q;
-    if (above > 0) AddWall(row, above / row.norm(), e.finger.normal_W, walls);
-    if (below > 0) AddWall(-row, below / row.norm(), e.finger.normal_W, walls);
+    if (above > 0) AddWall(MakeWall(row, above / row.norm(), e.finger.normal_W), walls);
+    if (below > 0) AddWall(MakeWall(-row, below / row.norm(), e.finger.normal_W), walls);
   }
 }
 
@@ -129,7 +134,8 @@ bool AddSide(const Explorer& e, const Capsule& own, const Vector3d& d, double up
              AngularRate(e.hand, links, joint, tip).cross(d).dot(arm)) *
             e.JointRate(k);
   }
-  return rate.norm() > kLeastRate && AddWall(rate, up / rate.norm(), n, walls, Wall::Kind::kBlind);
+  return rate.norm() > kLeastRate &&
+         AddWall(MakeWall(rate, up / rate.norm(), n, Wall::Kind::kBlind), walls);
 }
 
 /// The contact must stay on the round end. facing = d . n is negative there (d: along the link, n:
@@ -151,16 +157,17 @@ void AddTipSide(const Explorer& e, OnSide on_side, Walls* walls) {
                 .dot(n) *
             e.JointRate(k);
   // The finger would roll off over the side of its link.
-  AddWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, walls,
-          Wall::Kind::kMustLeave);
+  AddWall(
+      MakeWall(rate, (facing - e.parameters.least_facing) / rate.norm(), n, Wall::Kind::kMustLeave),
+      walls);
 }
 
 /// Between `on_W`, a point of a link of this finger, and one `between` away that rests. `depth`:
 /// how much too near they are [m].
-void AddNear(const Explorer& e, int own_link, const Vector3d& on_W, const Vector3d& between,
-             double depth, Walls* walls) {
+std::optional<Wall> WallTo(const Explorer& e, int own_link, const Vector3d& on_W,
+                           const Vector3d& between, double depth) {
   const double distance = between.norm();
-  if (depth <= 0 || distance < kTouching) return;
+  if (depth <= 0 || distance < kTouching) return {};
   // How fast they near each other, per contact velocity: the joints that move the own link, with
   // q' = J⁺ v.
   Vector3d rate = Vector3d::Zero();
@@ -168,7 +175,8 @@ void AddNear(const Explorer& e, int own_link, const Vector3d& on_W, const Vector
     const Vector3d v = PointRate(e.hand, e.estimate.kinematics, e.model.joints[k], own_link, on_W);
     rate += v.dot(between) / distance * e.JointRate(k);
   }
-  if (rate.norm() > kLeastRate) AddWall(rate, depth / rate.norm(), e.finger.normal_W, walls);
+  if (rate.norm() <= kLeastRate) return {};
+  return MakeWall(rate, depth / rate.norm(), e.finger.normal_W);
 }
 
 /// Between a link of this finger and another finger's.
@@ -176,29 +184,29 @@ void AddLinks(const Explorer& e, int own_link, const Capsule& own, const Capsule
               Walls* walls) {
   const Closest closest = BetweenSegments(own, other);
   const Vector3d between = closest.on_two - closest.on_one;
-  AddNear(e, own_link, closest.on_one, between,
-          own.radius + other.radius + e.parameters.clearance - between.norm(), walls);
+  AddWall(WallTo(e, own_link, closest.on_one, between,
+                 own.radius + other.radius + e.parameters.clearance - between.norm()),
+          walls);
 }
 
-/// Between the object, a ball about its centre for this, and what the last link has beside its
-/// fingertip: what touches there is not felt.
+/// Between the object and what the last link has beside its fingertip: what touches there is not
+/// felt. The object stands for a ball that touches the fingertip where it is felt, as large as the
+/// grasp. The deepest wall of all these shapes.
 void AddBody(const Explorer& e, Walls* walls) {
   const double radius = e.estimate.object_scale;
   const Vector3d centre = e.finger.p_WC - radius * e.finger.normal_W;
   const Isometry3d& X_WL = e.estimate.kinematics.X_WL[e.model.tip_link];
-  double most = 0;
-  Vector3d on_W, between;
-  for (const Shape& shape : e.hand.links[e.model.tip_link].shapes) {
-    if (&shape == &e.hand.links[e.model.tip_link].shapes.front()) continue;  // the fingertip
-    const Nearest nearest = NearestOf(shape, X_WL, centre);
-    const Vector3d to_centre = centre - nearest.on_W;
-    const double depth = nearest.radius + radius + e.parameters.clearance - to_centre.norm();
-    if (depth <= most) continue;
-    most = depth;
-    on_W = nearest.on_W;
-    between = to_centre;
+  const auto& shapes = e.hand.links[e.model.tip_link].shapes;
+  std::optional<Wall> deepest;
+  for (std::size_t k = 1; k < shapes.size(); ++k) {  // the first is the fingertip
+    const Nearest nearest = NearestOf(shapes[k], X_WL, centre);
+    const Vector3d between = centre - nearest.on_W;
+    const std::optional<Wall> wall =
+        WallTo(e, e.model.tip_link, nearest.on_W, between,
+               nearest.radius + radius + e.parameters.clearance - between.norm());
+    if (wall && (!deepest || wall->depth > deepest->depth)) deepest = wall;
   }
-  if (most > 0) AddNear(e, e.model.tip_link, on_W, between, most, walls);
+  AddWall(deepest, walls);
 }
 
 void AddOtherFingers(const Explorer& e, Walls* walls) {

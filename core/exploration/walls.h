@@ -12,10 +12,10 @@ enum class OnSide : std::uint8_t {
 };
 
 /// What a sliding finger must not run into: its joint limits, from `limit_margin` on, the other
-/// fingers, from `clearance` on (last two links of each), the object, from there on, with what its
-/// last link has beside the fingertip, and the end of its own round tip. A wall's direction is the
-/// contact motion that changes its quantity most: for a joint its row of J⁺, for two links the
-/// gradient of their distance through J⁺.
+/// fingers, from `clearance` on (last two links of each), the object, which the rest of its last
+/// link keeps `clearance` from, and the end of its own round tip. A wall's direction is the contact
+/// motion that changes its quantity most: for a joint its row of J⁺, for two links the gradient of
+/// their distance through J⁺.
 void FindWalls(const HandModel& hand, const Estimate& estimate, int finger,
                const ExplorationParameters& parameters, OnSide on_side, Walls* walls);
 

@@ -102,14 +102,19 @@ std::vector<Placed> PlacedMeshes(const aiScene& scene, std::uint64_t most) {
   return placed;
 }
 
+std::uint64_t Triangles(const std::vector<Placed>& placed) {
+  std::uint64_t triangles = 0;
+  for (const Placed& part : placed)
+    for (unsigned i = 0; i < part.mesh->mNumFaces; ++i)  // points and lines enclose nothing
+      triangles += part.mesh->mFaces[i].mNumIndices == 3;
+  return triangles;
+}
+
 void SendScene(int out, const aiScene& scene, const MeshLimits& limits) {
   const std::vector<Placed> placed = PlacedMeshes(scene, limits.vertices);
   Header header;
-  for (const Placed& part : placed) {
-    header.vertices += part.mesh->mNumVertices;
-    for (unsigned i = 0; i < part.mesh->mNumFaces; ++i)  // points and lines enclose nothing
-      header.triangles += part.mesh->mFaces[i].mNumIndices == 3;
-  }
+  for (const Placed& part : placed) header.vertices += part.mesh->mNumVertices;
+  header.triangles = Triangles(placed);
   Send(out, &header, sizeof(header));
   std::vector<aiVector3D> moved;
   for (const Placed& part : placed) {
@@ -144,12 +149,13 @@ void SendMesh(int out, const RawMesh& mesh) {
   Send(out, mesh.triangles.data(), mesh.triangles.size() * sizeof(Eigen::Vector3i));
 }
 
-/// `text`: what shall be read instead of the file, or "".
-void ReadByAssimp(int out, const std::string& file, const std::string& text,
-                  const std::string& suffix, const MeshLimits& limits) {
+constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_DropNormals;
+
+void ReadByAssimp(int out, const std::string& file, const std::string& suffix,
+                  const MeshLimits& limits) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_DropNormals;
+  const std::string text = TextForAssimp(file, suffix);
   const aiScene* scene = text.empty() ? importer.ReadFile(file, kSteps)
                                       : importer.ReadFileFromMemory(text.data(), text.size(),
                                                                     kSteps, suffix.c_str() + 1);
@@ -159,12 +165,21 @@ void ReadByAssimp(int out, const std::string& file, const std::string& text,
     SendScene(out, *scene, limits);
 }
 
-void SendPly(int out, const std::string& file, const MeshLimits& limits) {
-  const PolygonMesh read = ReadPly(file, limits);
-  if (read.polygons.empty())
-    SendMesh(out, read.mesh);
+/// Polygons are cut by assimp. One that it cannot cut (it has a corner twice, say) it leaves out;
+/// then all are cut from their first corner.
+void ReadPlyFile(int out, const std::string& file, const MeshLimits& limits) {
+  PolygonMesh read = ReadPly(file, limits);
+  if (read.polygons.empty()) return SendMesh(out, read.mesh);
+  Assimp::Importer importer;
+  const std::string text = ObjText(read);
+  const aiScene* scene = importer.ReadFileFromMemory(
+      text.data(), text.size(), kSteps | aiProcess_JoinIdenticalVertices, "obj");
+  const bool cut = scene != nullptr && scene->mRootNode != nullptr &&
+                   Triangles(PlacedMeshes(*scene, limits.vertices)) == read.triangles;
+  if (cut)
+    SendScene(out, *scene, limits);
   else
-    ReadByAssimp(out, file, ObjText(read), ".obj", limits);
+    SendMesh(out, Fans(std::move(read)));
 }
 
 void LimitChild(const MeshLimits& limits) {
@@ -197,11 +212,11 @@ void LimitChild(const MeshLimits& limits) {
   ::close_range(4, ~0U, 0);
   try {
     if (kind.suffix == ".ply")
-      SendPly(3, file, limits);
+      ReadPlyFile(3, file, limits);
     else if (kind.stl_rest)
       SendMesh(3, ReadBinaryStl(file, limits));
     else
-      ReadByAssimp(3, file, TextForAssimp(file, kind.suffix), kind.suffix, limits);
+      ReadByAssimp(3, file, kind.suffix, limits);
   } catch (const std::bad_alloc&) {
     SendError(3, fmt::format("needs more than {} MiB of memory", limits.memory_bytes >> 20));
   } catch (const std::exception& error) {

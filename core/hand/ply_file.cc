@@ -44,7 +44,7 @@ class Reader {
           ReadEntry(element.name == "face");
       }
     }
-    CheckPolygons();
+    CheckCorners();
     return std::move(read_);
   }
 
@@ -125,11 +125,11 @@ class Reader {
         if (!(value >= 0 && value <= 2e9) || value != std::floor(value))
           FailHere(fmt::format("the corner {:g}; must be the number of a vertex", value));
         corners_.push_back(static_cast<int>(value));
+        if (read_.triangles + corners_.size() > limits_.triangles + 2)
+          Fail(fmt::format("more than {} triangles", limits_.triangles));
       }
       if (corners_.size() < 3) continue;  // points and lines enclose nothing
-      triangles_ += corners_.size() - 2;
-      if (triangles_ > limits_.triangles)
-        Fail(fmt::format("more than {} triangles", limits_.triangles));
+      read_.triangles += corners_.size() - 2;
       if (corners_.size() == 3)
         read_.mesh.triangles.emplace_back(corners_[0], corners_[1], corners_[2]);
       else
@@ -138,13 +138,17 @@ class Reader {
   }
 
   /// Their vertices can stand after them in the file.
-  void CheckPolygons() const {
+  void CheckCorners() const {
+    if (read_.polygons.empty()) return;
     const std::size_t vertices = read_.mesh.vertices.size();
-    for (const std::vector<int>& polygon : read_.polygons)
-      for (const int corner : polygon)
+    const auto check = [&](const auto& corners, std::size_t number) {
+      for (const int corner : corners)
         if (static_cast<std::size_t>(corner) >= vertices)
-          Fail(fmt::format("a face of {} corners has the corner {}; there are {} vertices",
-                           polygon.size(), corner, vertices));
+          Fail(fmt::format("a face of {} corners has the corner {}; there are {} vertices", number,
+                           corner, vertices));
+    };
+    for (const std::vector<int>& polygon : read_.polygons) check(polygon, polygon.size());
+    for (const Eigen::Vector3i& triangle : read_.mesh.triangles) check(triangle, 3);
   }
 
   const MeshLimits& limits_;
@@ -154,8 +158,7 @@ class Reader {
   const PlyElement* element_ = nullptr;  // that is read
   std::uint64_t entry_ = 0;
   PolygonMesh read_;
-  std::vector<int> corners_;   // of the list that is read
-  std::size_t triangles_ = 0;  // that what was read is cut into
+  std::vector<int> corners_;  // of the list that is read
 };
 
 }  // namespace
@@ -177,6 +180,13 @@ std::string ObjText(const PolygonMesh& mesh) {
   for (const Eigen::Vector3i& triangle : mesh.mesh.triangles) add(triangle);
   for (const std::vector<int>& polygon : mesh.polygons) add(polygon);
   return text;
+}
+
+RawMesh Fans(PolygonMesh mesh) {
+  for (const std::vector<int>& polygon : mesh.polygons)
+    for (std::size_t k = 2; k < polygon.size(); ++k)
+      mesh.mesh.triangles.emplace_back(polygon[0], polygon[k - 1], polygon[k]);
+  return std::move(mesh.mesh);
 }
 
 }  // namespace regrasp

@@ -82,7 +82,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("exploration.eta", "m2/s", 0, 0.01, "Line 11: speed of the contact per unit of gradient.", kMeasured, [](P& p) { return &p.exploration.eta; }),
   Row("exploration.forgetting", "", 0.01, 0.999, "Weight of the past per update (least_squares).", kMeasured, [](P& p) { return &p.exploration.forgetting; }),
   Row("exploration.gradient_max", "1/m", 1, 1000, "Line 7: cap of the gradient norm.", kMeasured, [](P& p) { return &p.exploration.gradient_max; }),
-  Row("exploration.clearance", "m", 0, 0.02, "An exploring finger goes no nearer to a link of another finger.", kOurs, [](P& p) { return &p.exploration.clearance; }),
+  Row("exploration.clearance", "m", 0, 0.02, "An exploring finger goes no nearer to a link of another finger, nor to the object with what its last link has beside the fingertip.", kOurs, [](P& p) { return &p.exploration.clearance; }),
   Row("exploration.least_facing", "", -1, 1, "An exploring finger keeps its link axis times the outward normal below this, so that the contact stays on the round tip; 1 turns this off.", kMeasured, [](P& p) { return &p.exploration.least_facing; }),
   Row("exploration.onto_tip_s", "s", 0, 10, "A finger that explores on the side of its last link slides onto the round tip, for at most so long at a time: on the side its contact does not follow it, so that no gradient is felt. Where that takes longer it explores on the side, as with 0.", kMeasured, [](P& p) { return &p.exploration.onto_tip_s; }),
   Row("exploration.limit_margin", "rad", 0, 0.5, "An exploring finger goes no nearer to a joint limit.", kOurs, [](P& p) { return &p.exploration.limit_margin; }),

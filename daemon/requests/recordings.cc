@@ -43,10 +43,16 @@ Json FileJson(const fs::path& path, const fs::path& recording) {
   return json;
 }
 
-/// Ends the recording and answers with what the file has.
-void FinishRecording(Service& service, const Done& done) {
-  const std::shared_ptr<Recorder> recorder = service.SetRecorder(nullptr);
-  if (!recorder) {  // another client was faster
+/// Ends the recording by `recorder` and answers with what the file has.
+void FinishRecording(Service& service, const std::shared_ptr<Recorder>& recorder,
+                     const Done& done) {
+  if (service.recorder() == recorder) {
+    service.SetRecorder(nullptr);
+  } else if (!service.recording_end.empty()) {  // it has ended by itself meanwhile
+    const RpcError error{
+        ErrorCode::kIo, std::exchange(service.recording_end, {}), "regrasp record list", {}, {}};
+    return done({}, &error);
+  } else {  // another client was faster
     const RpcError error{
         ErrorCode::kBadState, "nothing is being recorded", "regrasp record start", {}, {}};
     return done({}, &error);
@@ -110,9 +116,12 @@ Outcome RecordStop(Service& service, const Params&, Client&) {
   outcome.begin = [&service](Done done) {
     // What has happened until now belongs to it: commands, which are here with the mark, and the
     // frames and events before it, which are shown later.
-    service.Mark(ControlRequest::Part::kNothing, [&service, done](const JournalNews& mark) {
-      service.AfterTaken(mark.request, [&service, done] { FinishRecording(service, done); });
-    });
+    service.Mark(ControlRequest::Part::kNothing,
+                 [&service, recorder = service.recorder(), done](const JournalNews& mark) {
+                   service.AfterTaken(mark.request, [&service, recorder, done] {
+                     FinishRecording(service, recorder, done);
+                   });
+                 });
   };
   return outcome;
 }

@@ -2,13 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "cli/run/replay_run.h"
 #include "core/journal/journal_text.h"
 #include "core/mcap/mcap_reader.h"
+#include "daemon/output/recorder.h"
 #include "tests/protocol/service_fixture.h"
 
 namespace regrasp::test {
@@ -141,16 +144,39 @@ TEST_F(Recordings, SampleAtTheRateThatWasAskedFor) {
   EXPECT_EQ(counts["gait"], 0);  // nothing rotates
 }
 
+/// Without a look at what the control thread has told.
+void WaitFor(const std::function<bool()>& there) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!there() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  ASSERT_TRUE(there());
+}
+
 // The frames come with the mark of the stop, and are shown after it.
 TEST_F(ServiceTest, ARecordingHoldsWhatNobodyHasBeenShownYet) {
   Call("record.start", {{"file", "a.mcap"}});
   const std::uint64_t pulse = service.control().pulse();
   Call("step", {{"ticks", 500}});
-  while (service.control().pulse() < pulse + 500) std::this_thread::yield();
+  WaitFor([&] { return service.control().pulse() >= pulse + 500; });
+  const std::uint64_t acknowledged = service.control().acknowledged();
   Call("record.stop", JsonIn::object());
+  WaitFor([&] { return service.control().acknowledged() > acknowledged; });
   DrainUntil([&] { return !service.recorder(); });
   const run::RunFile file = run::ReadRunFile(directory / "out/a.mcap");
   EXPECT_GE(file.segments.at(0).last_tick(), 400);  // the thread also counts a few times it woke
+}
+
+// It is full in the very Drain() that brings the mark.
+TEST_F(ServiceTest, AStopTellsWhyTheRecordingHasEndedMeanwhile) {
+  const_cast<ServiceConfig&>(service.config()).budgets.recording_bytes = 1;
+  Call("record.start", {{"file", "a.mcap"}});
+  WaitFor([&] { return service.recorder()->numbers().full; });
+  Outcome outcome = service.Call("record.stop", JsonIn::object(), &nobody);
+  std::string told;
+  outcome.begin(
+      [&](const Json&, const RpcError* error) { told = error ? error->message : "done"; });
+  DrainUntil([&] { return !told.empty(); });
+  EXPECT_NE(told.find("as much as one run file may have"), std::string::npos) << told;
+  EXPECT_TRUE(service.recording_end.empty());
 }
 
 }  // namespace

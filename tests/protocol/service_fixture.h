@@ -81,7 +81,7 @@ class ServiceTest : public ::testing::Test {
   void Call(const std::string& method, const JsonIn& params) {
     Outcome outcome = service.Call(method, params, &nobody);
     if (outcome.begin)
-      outcome.begin([&](const Json&, const RpcError* error) {
+      outcome.begin([method](const Json&, const RpcError* error) {
         EXPECT_EQ(error, nullptr) << method << ": " << error->message;
       });
   }

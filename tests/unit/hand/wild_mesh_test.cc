@@ -190,37 +190,80 @@ TEST_F(WildTest, BinaryPlyThatBeginsLikeALine) {
   EXPECT_NEAR(ObjectSolid(Load("<mesh filename=\"line.ply\"/>")).volume, 0.064e-3 / 6, 1e-10);
 }
 
-// An L of 40 x 40 mm with arms of 10 mm, its two ends as one hexagon each: not every corner of it
-// sees all the others. Its faces stand before its vertices.
-TEST_F(WildTest, PlyWithConcavePolygons) {
-  const std::vector<std::array<double, 2>> outline = {{0, 0},   {40, 0},  {40, 10},
-                                                      {10, 10}, {10, 40}, {0, 40}};
-  const std::string mesh = "<mesh filename=\"ell.ply\" scale=\"0.001 0.001 0.001\"/>";
-  for (int first = 0; first < 6; ++first) {
-    SCOPED_TRACE(first);
-    std::string vertices, faces, low = "6", high = "6";
-    for (int i = 0; i < 6; ++i) {
-      const auto [x, y] = outline[(first + i) % 6];
-      vertices += fmt::format("{} {} 0\n{} {} 20\n", x, y, x, y);
-      const int j = (i + 1) % 6;
-      faces += fmt::format("4 {} {} {} {}\n", 2 * i, 2 * j, 2 * j + 1, 2 * i + 1);
-      high += fmt::format(" {}", 2 * i + 1);
-      low += fmt::format(" {}", 2 * (5 - i));
-    }
-    Write("objects/ell.ply",
-          "ply\nformat ascii 1.0\nelement face 8\nproperty list uchar int vertex_indices\n"
-          "element vertex 12\nproperty float x\nproperty float y\nproperty float z\n"
-          "end_header\n" +
-              faces + low + "\n" + high + "\n" + vertices);
-    const auto solid = ObjectSolid(Load(mesh));
-    EXPECT_NEAR(solid.volume, 700e-6 * 0.02, 1e-9);
+double Area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector3d a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
+    area += 0.5 * (b - a).cross(c - a).norm();
   }
-  Write("objects/ell.ply",
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
-        "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 3\n");
-  EXPECT_NE(Refusal(mesh).find("a face of 4 corners has the corner 3; there are 3 vertices"),
+  return area;
+}
+
+/// A prism of 20 mm on an outline [mm], counter-clockwise, that begins at its corner `first`. Its
+/// faces stand before its vertices.
+std::string PolygonPrism(const std::vector<std::array<int, 2>>& outline, std::size_t first) {
+  const std::size_t n = outline.size();
+  std::string vertices, faces, low = fmt::format("{}", n), high = low;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto [x, y] = outline[(first + i) % n];
+    vertices += fmt::format("{} {} 0\n{} {} 20\n", x, y, x, y);
+    const std::size_t j = (i + 1) % n;
+    faces += fmt::format("4 {} {} {} {}\n", 2 * i, 2 * j, 2 * j + 1, 2 * i + 1);
+    high += fmt::format(" {}", 2 * i + 1);
+    low += fmt::format(" {}", 2 * (n - 1 - i));
+  }
+  return fmt::format(
+             "ply\nformat ascii 1.0\nelement face {}\nproperty list uchar int vertex_indices\n"
+             "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+             "end_header\n",
+             n + 2, 2 * n) +
+         faces + low + "\n" + high + "\n" + vertices;
+}
+
+// A fan from one corner of a concave polygon has the same signed area, but folds over itself.
+TEST_F(WildTest, PlyWithConcavePolygons) {
+  const struct {
+    std::vector<std::array<int, 2>> outline;
+    double area, around;  // [mm²], [mm]
+  } cases[] = {
+      {{{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}}, 700, 160},
+      {{{0, 0}, {30, 0}, {10, 10}, {0, 30}}, 300, 60 + 2 * std::sqrt(500.0)},
+  };
+  for (const auto& c : cases)
+    for (std::size_t first = 0; first < c.outline.size(); ++first) {
+      SCOPED_TRACE(fmt::format("{} corners from {}", c.outline.size(), first));
+      Write("objects/prism.ply", PolygonPrism(c.outline, first));
+      const auto solid =
+          ObjectSolid(Load(std::string("<mesh filename=\"prism.ply\"") + kMillimetres));
+      EXPECT_NEAR(solid.volume, c.area * 20e-9, 1e-9);
+      EXPECT_NEAR(Area(LoadMesh(root_ / "objects/prism.ply", Vector3d::Constant(1e-3))),
+                  (2 * c.area + 20 * c.around) * 1e-6, 1e-9);
+    }
+}
+
+TEST_F(WildTest, PlyWithPolygonsThatCannotBe) {
+  const auto file = [](int vertices, const std::string& faces, int number) {
+    return fmt::format(
+               "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+               "property float z\nelement face {}\nproperty list uchar int vertex_indices\n"
+               "end_header\n",
+               vertices, number) +
+           "0 0 0\n.03 0 0\n0 .03 0\n0 0 .03\n" + faces;
+  };
+  const std::string mesh = "<mesh filename=\"some.ply\"/>";
+  const std::string rest = "3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  Write("objects/some.ply", file(4, "4 0 2 1 4\n" + rest, 4));
+  EXPECT_NE(Refusal(mesh).find("a face of 4 corners has the corner 4; there are 4 vertices"),
             std::string::npos);
+  Write("objects/some.ply", file(4, "4 0 2 1 0\n3 0 1 7\n3 0 3 2\n3 1 2 3\n", 4));
+  EXPECT_NE(Refusal(mesh).find("a face of 3 corners has the corner 7; there are 4 vertices"),
+            std::string::npos);
+  // With a corner twice, as some exporters write triangles.
+  for (const char* bottom : {"4 0 2 1 1\n", "4 0 0 2 1\n", "5 0 2 1 1 1\n", "6 0 2 2 1 1 0\n"}) {
+    SCOPED_TRACE(bottom);
+    Write("objects/some.ply", file(4, bottom + rest, 4));
+    EXPECT_NEAR(ObjectSolid(Load(mesh)).volume, 0.027e-3 / 6, 1e-10);
+  }
 }
 
 TEST_F(WildTest, WhatAMeshFileClaimsIsHeldAgainstItsSize) {
