@@ -1,11 +1,14 @@
 #include "snapshots/plot_experiment.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
 
 #include "snapshots/axes.h"
 #include "snapshots/experiment_marks.h"
+#include "snapshots/refused.h"
 #include "snapshots/snapshots.h"
 
 namespace regrasp {
@@ -142,17 +145,43 @@ Box RoomOf(const Canvas& canvas, const Places& places, const Layout& layout, dou
   return {left, top, right - left, bottom - top};
 }
 
+/// The sheet as tall as its rows ask.
+CanvasSize SheetOf(const ExperimentPicture& picture, PlotOptions options) {
+  const bool narrow = Narrow(options);
+  const double height = Places(picture, narrow).SheetHeight();
+  options.height = static_cast<int>(height);
+  return SizeOf(options, narrow ? height : 0);
+}
+
+/// As many panels as a picture has room for, or rows where there is one panel; its facts tell.
+ExperimentPicture WhatFits(ExperimentPicture picture, const PlotOptions& options) {
+  const auto number = [&picture](auto member) { return Distinct(picture, member).size(); };
+  const std::size_t panels = number(&ExperimentGroup::panel), rows = number(&ExperimentGroup::row);
+  const auto member = panels > 1 ? &ExperimentGroup::panel : &ExperimentGroup::row;
+  const std::size_t all = std::max(panels > 1 ? panels : rows, std::size_t{1});
+  std::size_t left = all;
+  while (left > 1 && SheetOf(picture, options).height_px > kMostPixels) {
+    const std::string last = Distinct(picture, member).back();
+    std::erase_if(picture.groups, [&](const ExperimentGroup& g) { return g.*member == last; });
+    --left;
+  }
+  if (left < all)
+    picture.facts += fmt::format(" · the first {} of {} {}: there is no room for more", left, all,
+                                 panels > 1 ? "panels" : "rows");
+  return picture;
+}
+
 }  // namespace
 
-void PlotExperiment(const ExperimentPicture& picture, const std::string& path) {
-  if (picture.groups.empty())
+void PlotExperiment(const ExperimentPicture& whole, const std::string& path) {
+  if (whole.groups.empty())
     throw std::runtime_error(path + ": nothing to draw: the summary has no groups");
   PlotOptions options;
-  options.width_mm = picture.width_mm;
+  options.width_mm = whole.width_mm;
   const bool narrow = Narrow(options);
+  const ExperimentPicture picture = WhatFits(whole, options);
   const Places places(picture, narrow);
-  options.height = static_cast<int>(places.SheetHeight());
-  Canvas canvas(SizeOf(options, narrow ? places.SheetHeight() : 0), path);
+  Canvas canvas(SheetOf(picture, options), path);
   const double below = DrawTitle(&canvas, picture.title, picture.facts);
   const std::array<LegendGroup, 1> legends = {
       LegendGroup{"", MarkLegend(picture, places.series, true)}};

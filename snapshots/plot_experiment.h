@@ -51,7 +51,8 @@ void PlotPrediction(const PredictionPicture& picture, const std::string& path);
 
 /// Draws a row for each group: its shares with 95 % intervals, and 5-25-50-75-95 % of each measured
 /// quantity, or its few values, beside them (below them, on a narrow sheet). Groups of several
-/// panels go one below the other. Throws std::runtime_error with `path` as the other pictures do
+/// panels go one below the other; those that a picture has no room for are left out, and its facts
+/// tell. Throws std::runtime_error with `path` as the other pictures do
 /// (snapshots.h).
 void PlotExperiment(const ExperimentPicture& picture, const std::string& path);
 

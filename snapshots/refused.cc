@@ -8,8 +8,8 @@
 namespace regrasp {
 namespace {
 
-constexpr int kLeastWidth = 400, kLeastHeight = 300, kMost = 8000;  // [px]
-constexpr double kLeastDpi = 50, kMostDpi = 1200;                   // as the wire's table has them
+constexpr int kLeastWidth = 400, kLeastHeight = 300, kMost = kMostPixels;  // [px]
+constexpr double kLeastDpi = 50, kMostDpi = 1200;  // as the wire's table has them
 
 /// A pixel or two on the safe side of what rounding makes of the sizes.
 double LeastDpi(int width_px, int height_px, double dpi) {

@@ -19,6 +19,8 @@ class PictureRefused : public std::runtime_error {
   std::string cause_;
 };
 
+inline constexpr int kMostPixels = 8000;  ///< of a picture's width, and of its height
+
 /// Too few pixels, or too many.
 class PictureSizeRefused : public PictureRefused {
  public:

@@ -1,5 +1,7 @@
 // What single pictures show.
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
@@ -40,6 +42,33 @@ TEST_F(Snapshots, FewTrialsArePointsInsteadOfABox) {
   };
   EXPECT_TRUE(says(few, "one trial") && !says(few, "of the trials"));
   EXPECT_TRUE(says(many, "of the trials") && !says(many, "one trial"));
+}
+
+TEST_F(Snapshots, AnExperimentOfManyCasesShowsWhatThereIsRoomFor) {
+  ExperimentPicture picture;
+  picture.title = "Many";
+  picture.measure_labels = {"gain"};
+  for (int panel = 0; panel < 60; ++panel)
+    for (const char* row : {"first", "middle", "ring", "little", "thumb"})
+      picture.groups.push_back(
+          {row, "", fmt::format("body {}", panel), {{"φ rose", 0.9, 0.6, 1}}, {{}}});
+  const auto drawn = [&](double width_mm) {
+    picture.width_mm = width_mm;
+    PlotExperiment(picture, File("cases.svg"));
+    return Bytes(File("cases.svg"));
+  };
+  for (const double width_mm : {0.0, 88.0, 180.0}) {
+    SCOPED_TRACE(width_mm);
+    const std::string svg = drawn(width_mm);
+    EXPECT_NE(svg.find("of 60 panels"), std::string::npos);
+    EXPECT_NE(svg.find("body 0<"), std::string::npos);
+    EXPECT_EQ(svg.find("body 59<"), std::string::npos);
+  }
+  for (auto& group : picture.groups) {
+    group.row = group.panel + " " + group.row;
+    group.panel.clear();
+  }
+  EXPECT_NE(drawn(0).find("of 300 rows"), std::string::npos);
 }
 
 TEST_F(Snapshots, SceneWithADroppedObjectStillShowsTheHandAtItsSize) {
