@@ -141,18 +141,21 @@ void CheckPosture(const TomlFile& file, const char* key, const std::optional<Urd
   file.CheckKeys(table, names);
 }
 
-/// Throws the problems of a scenario with those of its hand. `refused`: why the hand could not be
-/// built; none where that follows from the scenario.
+/// Throws the problems of a scenario with those of its hand. `urdf_file`: empty where it names none
+/// that is there. `refused`: why the hand could not be built; none where that follows from the
+/// scenario.
 void RefuseWithoutHand(const TomlFile& file, const fs::path& urdf_file,
                        std::optional<ModelError> refused) {
   std::optional<UrdfFile> urdf;
-  try {
-    Problems problems(urdf_file.string());
-    UrdfFile read = ReadUrdf(urdf_file, &problems);
-    problems.ThrowIfAny();
-    urdf = std::move(read);
-  } catch (const ModelError& error) {
-    if (!refused) refused = error;
+  if (!urdf_file.empty()) {
+    try {
+      Problems problems(urdf_file.string());
+      UrdfFile read = ReadUrdf(urdf_file, &problems);
+      problems.ThrowIfAny();
+      urdf = std::move(read);
+    } catch (const ModelError& error) {
+      if (!refused) refused = error;
+    }
   }
   for (const char* key : {"q_preshape_deg", "q_closed_deg"}) CheckPosture(file, key, urdf);
   if (refused) file.Add(*refused);
@@ -199,7 +202,16 @@ HandFiles FindHandFiles(const std::string& hand, const std::vector<fs::path>& se
 
 LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
                             const std::vector<fs::path>& search_path, const LoadOptions& options) {
-  const auto [urdf_file, toml_file] = FindHandFiles(hand, search_path);
+  HandFiles files;
+  std::optional<ModelError> no_urdf;  // the rest of such a scenario is told with it
+  try {
+    files = FindHandFiles(hand, search_path);
+  } catch (const ModelError& error) {
+    if (fs::path(hand).extension() != ".toml" || !IsFile(hand)) throw;
+    files.scenario = hand;
+    no_urdf = error;
+  }
+  const auto& [urdf_file, toml_file] = files;
   if (toml_file.empty())
     throw ModelError(fmt::format(
         "{}: scenario not found; a hand needs one beside its URDF: regrasp hand new {} -o {}",
@@ -229,7 +241,8 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   }
   HandLayout layout;
   ReadNumbers(file, &layout);
-  if (!ReadJoints(file, &layout) || !sees_all) RefuseWithoutHand(file, urdf_file, std::nullopt);
+  if (!ReadJoints(file, &layout) || !sees_all || no_urdf)
+    RefuseWithoutHand(file, urdf_file, no_urdf);
   try {
     loaded.hand = LoadHand(urdf_file, layout, of_hand, &loaded.report);
   } catch (const ModelError& error) {

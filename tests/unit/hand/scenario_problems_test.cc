@@ -86,6 +86,26 @@ TEST_F(ScenarioProblems, PosturesAreJudgedAsFarAsTheUrdfCanBeRead) {
                  "mini.toml:12: q_preshape_deg.C [deg] must be a number", "mini.urdf:13: "});
 }
 
+TEST_F(ScenarioProblems, AUrdfThatIsNotThereIsToldWithTheRest) {
+  const std::string toml = (root_ / "hands/mini.toml").string();
+  const auto refusal = [&](const std::string& urdf) {
+    EditScenario("[object_pose]", urdf + "\ndamping_nm_s_rad = -5\n[object_pose]");
+    return Refusal(toml);
+  };
+  const std::string damping = ":5: damping_nm_s_rad = -5; allowed";
+  for (const auto& [urdf, told] :
+       {std::pair{"urdf = \"gone.urdf\"", "urdf = \"gone.urdf\": file not found"},
+        std::pair{"urdf = 3", "mini.toml:4: urdf must be"}}) {
+    SCOPED_TRACE(urdf);
+    const std::string said = refusal(urdf);
+    EXPECT_NE(said.find("2 errors:"), std::string::npos) << said;
+    EXPECT_NE(said.find(damping), std::string::npos) << said;
+    EXPECT_NE(said.find(told), std::string::npos) << said;
+  }
+  const std::string torn = refusal("urdf = 3\n[object_pose");  // no TOML: its first mistake alone
+  EXPECT_EQ(torn.find("errors:"), std::string::npos) << torn;
+}
+
 TEST_F(ScenarioProblems, OfAHandThatIsWrongAllOverTheRestIsCountedOnce) {
   std::string links;
   for (int i = 0; i < 60; ++i) links += "<link name=\"l" + std::to_string(i) + "\" /><link/>\n";
