@@ -16,6 +16,20 @@ class WallsTest : public ::testing::Test {
   const LoadedScenario scenario_ = ShadowHand();
   const HandModel& hand_ = scenario_.hand;
   const Estimate estimate_ = TouchingEstimate(hand_, GraspPosture(hand_));
+
+  /// `from` after the least joint motion of a finger that moves its contact by `way_W` [m]; the
+  /// contact itself is left where it was.
+  Estimate Moved(const Estimate& from, int finger, const Vector3d& way_W) const {
+    const auto& joints = hand_.fingers[static_cast<std::size_t>(finger)].joints;
+    const FingerVector dq =
+        from.fingers[static_cast<std::size_t>(finger)].J.completeOrthogonalDecomposition().solve(
+            way_W);
+    Estimate moved = from;
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      moved.q[joints[k]] += dq[static_cast<Eigen::Index>(k)];
+    ForwardKinematics(hand_, moved.q, &moved.kinematics);
+    return moved;
+  }
 };
 
 // At a joint's limit there is a wall, and the contact motion into it is one that would move that
@@ -85,20 +99,13 @@ TEST_F(WallsTest, AWallsDepthGrowsByTheWayIntoIt) {
   constexpr double kStep = 1e-5, kJustMet = 1e-4;  // m
   int seen = 0;
   for (int finger = 0; finger < hand_.num_fingers(); ++finger) {
-    const FingerEstimate& f = estimate_.fingers[static_cast<std::size_t>(finger)];
-    const auto& joints = hand_.fingers[static_cast<std::size_t>(finger)].joints;
     for (int k = 0; k < 300; ++k) {
       parameters.clearance = 1e-4 * k;
       Walls before, after;
       FindWalls(hand_, estimate_, finger, parameters, OnSide::kLeave, &before);
       for (std::size_t w = 0; w < before.size(); ++w) {
         if (before[w].depth > kJustMet) continue;
-        const FingerVector dq =
-            f.J.completeOrthogonalDecomposition().solve(kStep * before[w].direction_W);
-        Estimate moved = estimate_;
-        for (std::size_t n = 0; n < joints.size(); ++n)
-          moved.q[joints[n]] += dq[static_cast<Eigen::Index>(n)];
-        ForwardKinematics(hand_, moved.q, &moved.kinematics);
+        const Estimate moved = Moved(estimate_, finger, kStep * before[w].direction_W);
         FindWalls(hand_, moved, finger, parameters, OnSide::kLeave, &after);
         if (after.size() != before.size()) continue;  // another pair has met or parted
         // 5 %: the 1 mm of damping in J⁺ against singular values of 20 mm and more.
@@ -137,11 +144,7 @@ TEST_F(WallsTest, TheSideOfTheLinkIsABlindWallWithTheRoundTipBehindIt) {
     FindWalls(hand_, e, finger, parameters, OnSide::kLeave, &walls);
     ASSERT_EQ(walls.size(), 1u);
     if (!walls[0].blind()) continue;  // it cannot move along its link
-    const FingerVector dq =
-        f.J.completeOrthogonalDecomposition().solve(-kStep * walls[0].direction_W);
-    for (std::size_t k = 0; k < model.joints.size(); ++k)
-      e.q[model.joints[k]] += dq[static_cast<Eigen::Index>(k)];
-    ForwardKinematics(hand_, e.q, &e.kinematics);
+    e = Moved(e, finger, -kStep * walls[0].direction_W);
     EXPECT_NEAR((kUp - Up()) / kUp, kStep / walls[0].depth, 0.05 * kStep / walls[0].depth)
         << finger;
     ++seen;
@@ -205,12 +208,7 @@ TEST_F(WallsTest, TheRestOfTheLastLinkIsAWallFromTheClearanceOn) {
       ASSERT_LE(walls.size(), 1u);
       if (walls.empty()) continue;  // it does not come nearer
       ++seen;
-      const FingerVector dq =
-          f.J.completeOrthogonalDecomposition().solve(kStep * walls[0].direction_W);
-      Estimate moved = estimate_;
-      for (std::size_t n = 0; n < model.joints.size(); ++n)
-        moved.q[model.joints[n]] += dq[static_cast<Eigen::Index>(n)];
-      ForwardKinematics(hand, moved.q, &moved.kinematics);
+      const Estimate moved = Moved(estimate_, finger, kStep * walls[0].direction_W);
       Walls after;
       FindWalls(hand, moved, finger, parameters, OnSide::kLeave, &after);
       ASSERT_EQ(after.size(), 1u);
