@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 #include <stdexcept>
 
 #include "snapshots/axes.h"
@@ -154,20 +155,26 @@ CanvasSize SheetOf(const ExperimentPicture& picture, PlotOptions options) {
 }
 
 /// As many panels as a picture has room for, or rows where there is one panel; its facts tell.
-ExperimentPicture WhatFits(ExperimentPicture picture, const PlotOptions& options) {
-  const auto number = [&picture](auto member) { return Distinct(picture, member).size(); };
-  const std::size_t panels = number(&ExperimentGroup::panel), rows = number(&ExperimentGroup::row);
-  const auto member = panels > 1 ? &ExperimentGroup::panel : &ExperimentGroup::row;
-  const std::size_t all = std::max(panels > 1 ? panels : rows, std::size_t{1});
-  std::size_t left = all;
-  while (left > 1 && SheetOf(picture, options).height_px > kMostPixels) {
-    const std::string last = Distinct(picture, member).back();
-    std::erase_if(picture.groups, [&](const ExperimentGroup& g) { return g.*member == last; });
-    --left;
-  }
-  if (left < all)
-    picture.facts += fmt::format(" · the first {} of {} {}: there is no room for more", left, all,
-                                 panels > 1 ? "panels" : "rows");
+ExperimentPicture WhatFits(const ExperimentPicture& whole, const PlotOptions& options) {
+  const bool by_panel = Distinct(whole, &ExperimentGroup::panel).size() > 1;
+  const auto member = by_panel ? &ExperimentGroup::panel : &ExperimentGroup::row;
+  const std::vector<std::string> names = Distinct(whole, member);
+  const auto first = [&](std::size_t number) {
+    ExperimentPicture picture = whole;
+    std::erase_if(picture.groups, [&](const ExperimentGroup& group) {
+      return IndexOf(names, group.*member) >= number;
+    });
+    return picture;
+  };
+  const auto fits = [&](std::size_t number) {
+    return SheetOf(first(number), options).height_px <= kMostPixels;
+  };
+  if (fits(names.size())) return whole;
+  const auto numbers = std::views::iota(std::size_t{2}, names.size());
+  const std::size_t number = 1 + (std::ranges::partition_point(numbers, fits) - numbers.begin());
+  ExperimentPicture picture = first(number);
+  picture.facts += fmt::format(" · the first {} of {} {}: there is no room for more", number,
+                               names.size(), by_panel ? "panels" : "rows");
   return picture;
 }
 
