@@ -182,7 +182,7 @@ void World::Impl::FindContacts() {
   for (const ObjectHit& hit : object_hits) {
     ObjectContact contact;
     contact.link = hit.link;
-    contact.finger = finger_of_tip[hit.link];
+    contact.finger = hit.first ? finger_of_tip[hit.link] : -1;
     for (int k = 0; k < 3; ++k) {
       contact.p_WC[k] = hit.geom.pos[k];
       contact.normal_W[k] = -hit.geom.normal[k];
@@ -284,8 +284,11 @@ WorldMemory World::Memory() const {
 
 /// Of a link and a finger of this hand.
 bool World::Impl::MayHave(const ObjectContact& contact) const {
-  return contact.link >= 0 && static_cast<std::size_t>(contact.link) < finger_of_tip.size() &&
-         contact.finger == finger_of_tip[static_cast<std::size_t>(contact.link)];
+  if (contact.link < 0 || static_cast<std::size_t>(contact.link) >= finger_of_tip.size())
+    return false;
+  const bool beside = hand.links[static_cast<std::size_t>(contact.link)].shapes.size() > 1;
+  return contact.finger == finger_of_tip[static_cast<std::size_t>(contact.link)] ||
+         (beside && contact.finger == -1);
 }
 
 bool World::Remember(const WorldMemory& m) {

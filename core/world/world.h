@@ -45,9 +45,10 @@ struct WorldConfig {
 
 /// One contact of the object, with whatever it touches.
 struct ObjectContact {
-  int link = -1;                          ///< link of the hand
-  int finger = -1;                        ///< finger whose tip link this is, -1 for any other link
-  Vector3d p_WC = Vector3d::Zero();       ///< [m]
+  int link = -1;                     ///< link of the hand
+  int finger = -1;                   ///< whose fingertip it is; -1: what else a hand has, beside a
+                                     ///< fingertip on its link, too
+  Vector3d p_WC = Vector3d::Zero();  ///< [m]
   Vector3d normal_W = Vector3d::UnitZ();  ///< outward normal of the object
   Vector3d force_W = Vector3d::Zero();    ///< on the object, of the last step [N]
   double depth = 0;                       ///< penetration [m]

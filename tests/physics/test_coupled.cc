@@ -154,6 +154,43 @@ TEST(Contacts, OfMoreThanFitTheDeepestAreKept) {
     EXPECT_NEAR(contacts[static_cast<std::size_t>(k)].depth, depth(k + 6), 1e-9) << k;
 }
 
+/// A knob of 5 mm beside the fingertip, on its link.
+HandModel FingerWithKnob() {
+  HandModel hand = CoupledFinger(1.0);
+  Shape knob;
+  knob.radius = 0.005;
+  knob.a_L = knob.b_L = Vector3d(0, -0.02, 0.02);
+  hand.links[2].shapes.push_back(knob);
+  return hand;
+}
+
+TEST(Contacts, OfATipLinkOnlyItsFirstShapeIsTheFingertip) {
+  const HandModel hand = FingerWithKnob();
+  for (const Stepper stepper : {Stepper::kFast, Stepper::kExact})
+    for (const auto& [y, finger] : {std::pair{0.0295, 0}, {-0.0495, -1}}) {
+      WorldConfig config;
+      config.stepper = stepper;
+      World world(hand, FarBall(), config, JointVector::Zero(1), At(0, y, 0.06));
+      ASSERT_EQ(world.Step(), StepStatus::kOk);
+      const auto& contacts = world.state().contacts;
+      ASSERT_EQ(contacts.size(), 1u) << y;
+      EXPECT_EQ(contacts[0].link, 2);
+      EXPECT_EQ(contacts[0].finger, finger);
+    }
+}
+
+TEST(WorldMemory, ContactsBesideAFingertipAreThoseOfNoFinger) {
+  const HandModel hand = FingerWithKnob();
+  World world(hand, FarBall(), WorldConfig(), JointVector::Zero(1), At(0, 1, 0));
+  WorldMemory memory = world.Memory();
+  ObjectContact contact;
+  contact.link = 2;
+  memory.state.contacts.push_back(contact);
+  EXPECT_TRUE(world.Remember(memory));
+  memory.state.contacts[0].finger = 1;
+  EXPECT_FALSE(world.Remember(memory));
+}
+
 TEST(WorldMemory, ContactsOfNoLinkOfTheHandAreRefused) {
   const HandModel hand = CoupledFinger(1.0);
   World world(hand, FarBall(), WorldConfig(), JointVector::Zero(1), At(0, 1, 0));
