@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small hands use
 constexpr int kSearches = 3;        // for a hand of which no finger can be left out
-constexpr std::size_t kWays = 8;    // to lay it into a grasp, that are tried
+constexpr std::size_t kTried = 6;   // grasps of a search: by holding, then by using them
+constexpr std::size_t kWays = 8;    // to lay an object into a grasp, that are tried
 constexpr double kLeastBall = 30;   // that stands for it [mm]
 
 /// A ball of the search path's that is nearest in size.
@@ -163,14 +164,15 @@ class Maker {
     return std::clamp(box_.reach - search_.task.radius + kClear, kOpenGap, kWidest);
   }
 
-  /// The best grasps get a way in and a trial; the one that holds with the most margin is taken,
-  /// else the first.
+  /// The best grasps get a way in and a trial. Of those that hold, the first by their margin are
+  /// tried in use; the best of all is taken.
   Found Choose(const std::vector<BallGrasp>& grasps, double size_mm) {
     RandomStream random(search_.seed, 2);
-    const std::size_t count = std::min<std::size_t>(grasps.size(), 4);
-    Found best;
+    const std::size_t count = std::min(grasps.size(), kTried);
+    std::vector<Found> tried;
     for (std::size_t k = 0; k < count; ++k) {
-      progress_.Show("finding a way in" + without_ + ", trying it", static_cast<double>(k) / 4);
+      progress_.Show("finding a way in" + without_ + ", trying it",
+                     static_cast<double>(k) / kTried);
       Found found;
       found.grasp = grasps[k];
       search_.task.gap = OpenGap();
@@ -191,17 +193,27 @@ class Maker {
       found.model.object = object_.empty() ? LoadObject(scenario.object, ModelSearchPath()) : body_;
       if (!object_.empty()) {
         touched_ = true;
-        TryWays(found, &best);
+        TryWays(found, &tried);
         continue;
       }
       found.Try(search_.seed);
-      if (found.Better(best)) best = found;
+      tried.push_back(found);
     }
-    return best;
+    const auto better = [](const Found& a, const Found& b) { return a.Better(b); };
+    std::ranges::stable_sort(tried, better);
+    tried.resize(std::min(tried.size(), kTried));
+    for (std::size_t k = 0; k < tried.size(); ++k) {
+      progress_.Show("exploring and turning with it", static_cast<double>(k) / kTried);
+      Found& found = tried[k];
+      if (found.Good() && CanBeUsed(found.model.hand))
+        found.use = TryToUse(found.model, found.choice.stepper, search_.seed);
+    }
+    std::ranges::stable_sort(tried, better);
+    return tried.empty() ? Found{} : tried.front();
   }
 
   /// The object as it may lie in a grasp.
-  void TryWays(Found found, Found* best) {
+  void TryWays(Found found, std::vector<Found>* tried) {
     const std::vector<Way> ways =
         WaysToLie(found.model, box_, found.grasp.p_WO, Starts(found.model, search_.seed));
     for (std::size_t k = 0; k < std::min(ways.size(), kWays); ++k) {
@@ -211,7 +223,7 @@ class Maker {
       found.inside = ways[k].inside;
       ++ways_;
       found.Try(search_.seed);
-      if (found.Better(*best)) *best = found;
+      tried->push_back(found);
     }
   }
 

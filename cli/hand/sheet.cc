@@ -23,8 +23,26 @@ std::string Sheet::ScoreLine() const {
 
 std::string Sheet::Tried() const {
   if (!best.trial.held) return "tried: does not hold";
-  return fmt::format("tried with {} seeds: holds {} for {:g} s, moved {:.2f} mm at most", kTrials,
-                     best.model.scenario.object, kHold, 1e3 * best.trial.moved_m);
+  std::string told =
+      fmt::format("tried with {} seeds: holds {} for {:g} s, moved {:.2f} mm at most", kTrials,
+                  best.model.scenario.object, kHold, 1e3 * best.trial.moved_m);
+  if (const UseTrial& use = best.use; use.any())
+    told += fmt::format(
+        "\n  with {}: exploring raises phi in {} of {}; {} of {} turns, {} within {:g} mm and "
+        "{:g}°",
+        kUses, use.rose, use.explorations, use.turned, use.turns, use.clean, kCleanOffset,
+        kCleanTilt);
+  return told;
+}
+
+Json Sheet::Used() const {
+  const UseTrial& use = best.use;
+  if (!use.any()) return nullptr;
+  return {{"explorations", use.explorations},
+          {"rose", use.rose},
+          {"turns", use.turns},
+          {"turned", use.turned},
+          {"clean", use.clean}};
 }
 
 std::vector<std::string> Sheet::Remarks() const {
@@ -97,6 +115,7 @@ Answer Sheet::Tell() const {
                  {"held", best.trial.held},
                  {"hold_end", best.trial.end},
                  {"moved_m", best.trial.moved_m},
+                 {"used", Used()},
                  {"stepper", stepper},
                  {"stepper_reason", best.choice.reason},
                  {"remarks", remarks},

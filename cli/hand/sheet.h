@@ -30,6 +30,7 @@ struct Sheet {
 
  private:
   std::string Tried() const;
+  Json Used() const;  ///< null where it was not tried
   std::vector<std::string> Remarks() const;
 };
 

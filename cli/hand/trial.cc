@@ -1,43 +1,58 @@
 #include "cli/hand/trial.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "core/session/session.h"
 #include "core/session/start.h"
 
 namespace regrasp::hand {
+namespace {
 
-HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t seed,
-                    double seconds) {
-  constexpr double kLongest = 20;  // [s] for the grasp
+constexpr const char* kDropped = "it dropped the object";
+
+}  // namespace
+
+Grasped GraspWith(const LoadedScenario& model, Stepper stepper, std::uint64_t seed) {
+  constexpr double kLongest = 20;  // [s]
   SessionConfig config;
   config.model = model;
   config.parameters = DefaultParameters(model);
   config.noise = NoisePreset("paper").value();
   config.seed = seed;
   config.world.stepper = stepper;
-  Session session(config);
+  Grasped grasped{std::make_unique<Session>(config), ""};
+  Session& session = *grasped.session;
   Command grasp;
   grasp.type = CommandType::kGrasp;
   grasp.job = 1;
   session.Apply(grasp);
+  const auto ticks = std::llround(kLongest / config.world.dt);
+  while (session.job_running() && session.tick() < ticks) session.Tick();
+  for (const JobRecord& job : session.TakeFinishedJobs()) grasped.end = job.error;
+  if (grasped.held()) return grasped;
+  if (session.state() == SessionState::kFaulted) grasped.end = session.world().fault_message();
+  if (grasped.end.empty()) grasped.end = kDropped;
+  return grasped;
+}
+
+bool Grasped::held() const { return session->state() == SessionState::kHolding; }
+
+HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t seed,
+                    double seconds) {
+  const Grasped grasped = GraspWith(model, stepper, seed);
   HoldTrial trial;
-  const auto ticks = [&](double s) { return static_cast<std::int64_t>(s / config.world.dt); };
-  while (session.job_running() && session.tick() < ticks(kLongest)) session.Tick();
-  for (const JobRecord& job : session.TakeFinishedJobs()) trial.end = job.error;
-  if (session.state() != SessionState::kHolding) {
-    if (session.state() == SessionState::kFaulted) trial.end = session.world().fault_message();
-    if (trial.end.empty()) trial.end = "it dropped the object";
-    return trial;
-  }
+  trial.end = grasped.end;
+  if (!grasped.held()) return trial;
+  Session& session = *grasped.session;
   const Vector3d p = session.truth().p_WO;
-  for (const std::int64_t end = session.tick() + ticks(seconds);
-       session.tick() < end && session.state() == SessionState::kHolding;)
+  for (const auto end = session.tick() + std::llround(seconds / session.config().world.dt);
+       session.tick() < end && grasped.held();)
     session.Tick();
-  trial.held = session.state() == SessionState::kHolding;
+  trial.held = grasped.held();
   trial.seeds = trial.held ? 1 : 0;
-  trial.end = trial.held ? "" : "it dropped the object";
+  trial.end = trial.held ? "" : kDropped;
   trial.moved_m = (session.truth().p_WO - p).norm();
   Frame frame;
   session.Snapshot(&frame, false);
@@ -75,7 +90,7 @@ void Found::Try(std::uint64_t seed) {
 bool Found::Better(const Found& other) const {
   if (!any() || !other.any()) return any();
   const auto rank = [](const Found& f) {
-    return std::tuple(f.Good(), f.trial.held, -f.inside, f.trial.seeds,
+    return std::tuple(f.Good(), f.trial.held, -f.inside, f.trial.seeds, f.use.Points(),
                       f.trial.held ? f.trial.margin_n : 0.0);
   };
   return rank(*this) > rank(other);

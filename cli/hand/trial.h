@@ -3,17 +3,28 @@
 /// Tries a scenario in simulation: what its posture is worth.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/hand/lay_object.h"
+#include "cli/hand/use_trial.h"
 #include "core/hand/scenario.h"
 #include "core/posture/ball_grasp.h"
 #include "core/posture/way_in.h"
+#include "core/session/session.h"
 #include "core/world/stepper_choice.h"
 #include "core/world/world.h"
 
 namespace regrasp::hand {
+
+/// A session that has grasped its scenario's object at noise `paper`, or why not.
+struct Grasped {
+  std::unique_ptr<Session> session;
+  std::string end;
+  bool held() const;
+};
+Grasped GraspWith(const LoadedScenario& model, Stepper stepper, std::uint64_t seed);
 
 struct HoldTrial {
   bool held = false;
@@ -42,6 +53,7 @@ struct Found {
   WayIn way;
   LoadedScenario model;
   HoldTrial trial;
+  UseTrial use;  ///< of the best that hold
   StepperChoice choice;
   int inside = 0;  ///< of kStarts, in which the object begins inside a link
 

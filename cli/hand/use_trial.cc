@@ -1,0 +1,71 @@
+#include "cli/hand/use_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "cli/hand/trial.h"
+#include "core/session/session.h"
+
+namespace regrasp::hand {
+namespace {
+
+constexpr double kLongestExploration = 20, kLongestTurn = 60;  // [s]
+
+/// The job's end; failed where it takes longer.
+JobRecord Run(Session& session, Command command, double longest_s) {
+  command.job = 2;
+  session.Apply(command);
+  const auto end = session.tick() + std::llround(longest_s / session.config().world.dt);
+  while (session.job_running() && session.tick() < end) session.Tick();
+  JobRecord ended;
+  ended.state = JobState::kFailed;
+  for (const JobRecord& job : session.TakeFinishedJobs()) ended = job;
+  return ended;
+}
+
+}  // namespace
+
+double UseTrial::Points() const {
+  const auto share = [](int of, int all) { return all > 0 ? static_cast<double>(of) / all : 0.0; };
+  return share(rose, explorations) + share(turned, turns) + share(clean, turns);
+}
+
+bool CanBeUsed(const HandModel& hand) {
+  return hand.num_fingers() >= kFewestToRegrasp &&
+         std::ranges::all_of(hand.fingers, [](const Finger& f) { return f.joints.size() >= 3; });
+}
+
+UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed) {
+  UseTrial trial;
+  for (unsigned k = 0; k < kUses; ++k) {
+    trial.explorations += model.hand.num_fingers();
+    trial.turns += 1;
+    const Grasped grasped = GraspWith(model, stepper, seed + k);
+    if (!grasped.held()) continue;
+    std::string state;
+    grasped.session->Save(&state);
+    for (int f = 0; f < model.hand.num_fingers(); ++f) {
+      Command explore;
+      explore.type = CommandType::kExplore;
+      explore.finger = f;
+      explore.seed = seed + k;
+      const ExploreResult result = Run(*grasped.session, explore, kLongestExploration).explore;
+      if (grasped.held() && result.phi_true_final > result.phi_true_initial) ++trial.rose;
+      grasped.session->Load(state);
+    }
+    Command rotate;
+    rotate.type = CommandType::kRotate;
+    rotate.axis_W = -Vector3d::UnitZ();
+    rotate.angle_rad = 2 * M_PI;
+    const JobRecord job = Run(*grasped.session, rotate, kLongestTurn);
+    if (job.state != JobState::kDone || job.rotate.dropped) continue;
+    ++trial.turned;
+    if (1e3 * job.rotate.max_position_error_m <= kCleanOffset &&
+        job.rotate.max_tilt_rad * 180 / M_PI <= kCleanTilt)
+      ++trial.clean;
+  }
+  return trial;
+}
+
+}  // namespace regrasp::hand
