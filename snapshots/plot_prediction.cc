@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "snapshots/axes.h"
@@ -38,8 +39,11 @@ void DrawRoc(Canvas* canvas, const PredictionPicture& picture, double height) {
 /// Areas under the ROC with their intervals, best first.
 void DrawForest(Canvas* canvas, const PredictionPicture& picture, double height) {
   const double rows = static_cast<double>(picture.predictors.size());
+  double least = 0.4;  // and lower where an interval begins there
+  for (const PredictorMark& p : picture.predictors) least = std::min(least, p.low);
+  least = std::max(0.0, std::floor(10 * least) / 10);
   const Panel panel{Box(kForestLeft, kTop, canvas->width() - kForestLeft - kForestRight, height),
-                    NiceAxis(0.4, 1, 6, false, "area under the ROC, 95 % interval"),
+                    NiceAxis(least, 1, 6, false, "area under the ROC, 95 % interval"),
                     Axis{0.01, rows, rows + 1, ""}};
   DrawGrid(canvas, panel, true);
   canvas->Line(panel.At(0.5, 0), panel.At(0.5, rows), {kGrey, 1.5, {6, 6}});
@@ -47,10 +51,10 @@ void DrawForest(Canvas* canvas, const PredictionPicture& picture, double height)
     const PredictorMark& p = picture.predictors[k];
     const double row = rows - 0.5 - static_cast<double>(k);
     const Colour colour = k < kCurves ? PenOf(k).colour : kGrey;
-    const auto x = [&](double area) { return std::clamp(area, 0.4, 1.0); };
+    const auto x = [&](double area) { return std::clamp(area, least, 1.0); };
     canvas->Line(panel.At(x(p.low), row), panel.At(x(p.high), row), {colour, 3});
     canvas->Mark(Marker::kDisc, panel.At(x(p.area), row), 7, colour);
-    canvas->Text({kForestLeft - kBetween, panel.At(0.4, row).y}, p.name + ", " + p.form,
+    canvas->Text({kForestLeft - kBetween, panel.At(least, row).y}, p.name + ", " + p.form,
                  {.size = 16, .align_x = AlignX::kRight});
   }
   DrawFrame(canvas, panel);

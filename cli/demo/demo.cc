@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "cli/demo/figures.h"
+#include "cli/experiment/store.h"
 
 namespace regrasp::cli {
 
@@ -44,7 +44,7 @@ ExitCode Demo(Context& context, const Invocation& invocation) {
                                 {"measured", claim.measured},
                                 {"verdict", claim.shown ? "shown" : "missed"}});
   }
-  std::ofstream(output / "summary.json") << answer.dump(1) << '\n';
+  WriteFile(output / "summary.json", answer.dump(1) + "\n");
   context.Print(answer, [&] {
     Output& out = context.out();
     Table table({"THE PAPER", "THIS RUN", ""});

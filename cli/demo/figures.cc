@@ -32,6 +32,12 @@ bool Known(const Json& record) {
   return At(record, "phi_true_initial").is_number() && At(record, "phi_true_final").is_number();
 }
 
+/// Of a hand that holds nothing: 0.
+double Stability(const Json& quality) {
+  const Json& stability = At(quality, "stability");
+  return stability.is_number() ? stability.get<double>() : 0.0;
+}
+
 /// phi, noise-free, before and after.
 std::string Rise(const Json& record) {
   if (!Known(record)) return Plain(At(record, "error"));
@@ -115,15 +121,14 @@ Figures::Exploration Figures::Explore(const std::string& finger, const std::stri
   Exploration run;
   GraspObject();
   run.start_hash = Plain(At(daemon_.Call("status"), "state_hash"));
-  run.first_stability = daemon_.Call("quality").value("stability", 0.0);
+  run.first_stability = Stability(daemon_.Call("quality"));
   run.record = daemon_.Run(
       "explore", {{"finger", finger}, {"criterion", criterion}, {"seed", gradient_seed}},
       kExploreChunk, kExploreLimit, [&] {
         const Json quality = daemon_.Call("quality", {{"measures", "frame"}});
-        if (At(quality, "stability").is_number())
-          run.least_stability = std::min(run.least_stability, quality["stability"].get<double>());
+        run.least_stability = std::min(run.least_stability, Stability(quality));
       });
-  run.last_stability = daemon_.Call("quality").value("stability", 0.0);
+  run.last_stability = Stability(daemon_.Call("quality"));
   MustHold("exploring (" + finger + ")");
   return run;
 }

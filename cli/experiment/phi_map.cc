@@ -34,7 +34,7 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
                                             {"criterion", criterion},
                                             {"estimator", "secant"},
                                             {"seed", direction_seed},
-                                            {"max_cycles", cycles}});
+                                            {"max_cycles", cycles + 1}});  // one to stop at
   Json begin;
   bool slid = false;
   std::deque<std::array<double, 3>> last;

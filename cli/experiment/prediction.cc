@@ -98,7 +98,7 @@ std::vector<double> Look(const Json& quality, const Json& contacts) {
   double without = kAlarmLimit, manipulability = kAlarmLimit, limit = kAlarmLimit;
   double ratio = 0, force = kAlarmLimit, touching = 0;
   for (const auto& [name, finger] : Named(quality.at("fingers"), "finger")) {
-    without = std::min(without, number(At(finger, "load_margin_without_n"), kAlarmLimit));
+    without = std::min(without, number(At(finger, "load_margin_without_n"), 0));
     limit = std::min(limit, number(At(finger, "joint_limit_margin_rad"), kAlarmLimit));
     manipulability = std::min(manipulability, number(At(finger, "manipulability"), kAlarmLimit));
   }
@@ -117,9 +117,11 @@ std::vector<double> Look(const Json& quality, const Json& contacts) {
   if (touching == 0) force = 0;
   const Json &object = contacts.at("object"), &is = object.at("p_WO_m"),
              &wanted = object.at("p_WO_reference_m");
-  const double lag = std::hypot(is.at(0).get<double>() - wanted.at(0).get<double>(),
-                                is.at(1).get<double>() - wanted.at(1).get<double>(),
-                                is.at(2).get<double>() - wanted.at(2).get<double>());
+  double lag = kAlarmLimit;  // of an object that the hand has lost
+  if (wanted.is_array())
+    lag = std::hypot(is.at(0).get<double>() - wanted.at(0).get<double>(),
+                     is.at(1).get<double>() - wanted.at(1).get<double>(),
+                     is.at(2).get<double>() - wanted.at(2).get<double>());
   for (const double value : {without, ratio, force, manipulability, limit, touching, lag})
     values.push_back(value);
   return values;

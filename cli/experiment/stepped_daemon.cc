@@ -9,6 +9,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/print/print.h"
+#include "core/common/fnv1a.h"
 
 namespace regrasp::cli {
 namespace {
@@ -101,9 +102,7 @@ std::string DaemonBuild() {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (bytes.empty()) throw CliError(kIo, "cannot read " + path, "ls -l " + path);
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", Fnv1a(bytes));
 }
 
 }  // namespace regrasp::cli

@@ -7,13 +7,14 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
 
 #include "cli/client/errors.h"
 #include "cli/print/print.h"
+#include "core/common/fnv1a.h"
 #include "core/files/draft.h"
+#include "core/files/read_file.h"
 
 namespace regrasp::cli {
 namespace {
@@ -23,6 +24,8 @@ namespace fs = std::filesystem;
 constexpr const char* kPlanFile = "experiment.json";
 constexpr const char* kOther = "the same command with -o OTHER_DIR";
 constexpr const char* kTrialsFile = "trials.jsonl";
+constexpr const char* kCheck = "check";
+constexpr std::uint64_t kMost = 4ULL << 30;  // of a file [bytes]
 
 std::string Look(const fs::path& path) { return "ls -ld " + path.parent_path().string(); }
 
@@ -41,9 +44,23 @@ void WriteAll(int fd, const std::string& text, const fs::path& path) {
 }
 
 std::string ReadFile(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError("read", path);
-  return {std::istreambuf_iterator<char>(file), {}};
+  try {
+    return ReadRegularFile(path, kMost);
+  } catch (const std::runtime_error& error) {
+    throw CliError(errno == EACCES ? kPermission : kIo, error.what(), Look(path));
+  }
+}
+
+/// What a line of trials.jsonl ends with: FNV-1a of the line without it, in hex.
+std::string CheckOf(const Json& line) { return fmt::format("{:016x}", Fnv1a(line.dump())); }
+
+/// Null unless the line is whole and as it was written.
+Json Whole(const std::string& text) {
+  Json line = Json::parse(text, nullptr, false);
+  if (!line.is_object() || !line.contains(kCheck)) return nullptr;
+  const Json check = line[kCheck];
+  line.erase(kCheck);
+  return check == CheckOf(line) ? line : Json();
 }
 
 UnitResult ResultOf(const Json& line) {
@@ -70,9 +87,12 @@ Plan ReadPlan(const fs::path& directory) {
 
 Trials ReadTrials(const fs::path& directory, const Plan& plan) {
   Trials trials;
-  std::ifstream file(directory / kTrialsFile);
+  const fs::path path = directory / kTrialsFile;
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return trials;
+  std::istringstream file(ReadFile(path));
   for (std::string line; std::getline(file, line);) {
-    const Json json = Json::parse(line, nullptr, false);
+    const Json json = Whole(line);
     if (!At(json, "unit").is_number_unsigned() || !At(json, "rows").is_array()) continue;
     const std::int64_t seeds = json.value("seeds", plan.seeds);
     if (seeds < 1 || seeds > plan.seeds) continue;
@@ -140,9 +160,9 @@ Store::~Store() {
 }
 
 void Store::Add(std::size_t unit, const UnitResult& result) {
-  const std::string line =
-      Json{{"unit", unit}, {"seeds", seeds_}, {"rows", result.rows}, {"map", result.map}}.dump() +
-      "\n";
+  Json whole = {{"unit", unit}, {"seeds", seeds_}, {"rows", result.rows}, {"map", result.map}};
+  whole[kCheck] = CheckOf(whole);
+  const std::string line = whole.dump() + "\n";
   WriteAll(file_, line, directory_ / kTrialsFile);
   // As it will be read again, so that a run in one go and one in two give the same bytes.
   trials_[unit] = ResultOf(Json::parse(line));

@@ -5,7 +5,8 @@
 ///   trials.jsonl     a line for each finished unit, in the order in which they finished, with the
 ///                    number of seeds that its place among the units belongs to
 ///   trials.csv, maps.csv, summary.json, summary.png    made from these when all have finished
-/// A line is written at once when its unit has finished; a line cut off by a crash is ignored.
+/// A line is written at once when its unit has finished, and ends with a check of itself: one that
+/// a crash cut off, or that is not as it was written, is ignored and its unit runs again.
 
 #include <filesystem>
 #include <map>

@@ -113,7 +113,9 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
                          timed ? kPhiLook : kExploreLimit, kExploreLimit, [&] {
                            if (!timed || near.reached()) return;
                            const Json truth = daemon->Call("truth").at("fingers").at(unit.subject);
-                           near.Look(truth.at("manipulability"), kSuccessShare * map->best);
+                           const Json& phi = truth.at("manipulability");  // null: no contact
+                           near.Look(phi.is_number() ? phi.get<double>() : 0.0,
+                                     kSuccessShare * map->best);
                          });
     if (near.reached()) near_best_s = near.time_s();
     daemon->Step(kHoldTicks);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "cli/run/run_tables.h"
+#include "cli/run/write_failure.h"
 
 namespace regrasp::run {
 namespace {
@@ -62,8 +63,8 @@ void WriteCsv(const RunTables& run, const TableRows& rows, const std::string& ou
         if (columns.size() == kMaxColumns)
           throw std::runtime_error(fmt::format("a table of more than {} columns", kMaxColumns));
         columns.push_back(cells[i].first);
-        const std::string& name = cells[i].first;  // of noise.position_m the last part tells
-        units.push_back(UnitOf(UnitOf(field).empty() ? name : field));
+        // Of noise.position_m the last part tells, of a parameter its name.
+        units.push_back(UnitOf(UnitOf(field).empty() ? cells[i].first : field));
       }
     }
   }
@@ -81,7 +82,7 @@ void WriteCsv(const RunTables& run, const TableRows& rows, const std::string& ou
     file << "\n";
   }
   file.close();
-  if (!file) throw std::runtime_error("cannot write " + out);
+  if (!file) FailToWrite(out);
 }
 
 }  // namespace regrasp::run

@@ -1,10 +1,10 @@
 #include "cli/run/gif.h"
 
 #include <cmath>
-#include <stdexcept>
 #include <unordered_map>
 
 #include "cli/run/palette.h"
+#include "cli/run/write_failure.h"
 
 namespace regrasp::run {
 namespace {
@@ -112,7 +112,7 @@ void Gif::Add(std::span<const std::uint8_t> bgr) {
 void Gif::Finish() {
   out_.put('\x3b');
   out_.close();
-  if (!out_) throw std::runtime_error("cannot write " + path_);
+  if (!out_) FailToWrite(path_);
 }
 
 }  // namespace regrasp::run

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "cli/run/write_failure.h"
+
 namespace regrasp::run {
 namespace {
 
@@ -92,7 +94,8 @@ void PutIndexFirst(const std::string& path) {
     out.flush();
     if (!out) throw std::runtime_error("it cannot be written");
   } catch (const std::runtime_error& e) {
-    throw std::runtime_error("the film " + path + ": " + e.what());
+    const std::string cause = WhyNotWritten(path);
+    throw std::runtime_error("the film " + path + ": " + (cause.empty() ? e.what() : cause));
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "cli/run/write_failure.h"
+
 namespace regrasp::run {
 namespace {
 
@@ -122,7 +124,7 @@ void Npz::Finish() {
   Put<std::uint16_t>(&end, 0);
   out_ << directory_ << end;
   out_.close();
-  if (!out_) throw std::runtime_error("cannot write " + path_);
+  if (!out_) FailToWrite(path_);
 }
 
 }  // namespace regrasp::run

@@ -9,6 +9,7 @@
 #include "core/journal/checked_json.h"
 #include "core/journal/journal.h"
 #include "core/journal/run_messages.h"
+#include "core/session/parameters.h"
 
 namespace regrasp::run {
 namespace {
@@ -17,6 +18,7 @@ using Json = nlohmann::ordered_json;
 
 /// Units by the end of a field's name; longer ends first.
 constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+    {"_n_s_m", "N s/m"}, {"_n_m", "N/m"}, {"_hz", "Hz"},   {"_kg", "kg"},
     {"_rad_s", "rad/s"}, {"_m_s", "m/s"}, {"_1_m", "1/m"}, {"_nm", "N m"},
     {"_rad", "rad"},     {"_n", "N"},     {"_m", "m"},     {"_s", "s"}};
 
@@ -52,6 +54,14 @@ void CheckHoldsRun(const std::string& path, bool has_run, const McapSummary& sum
 }
 
 std::string_view UnitOf(std::string_view field) {
+  constexpr std::string_view kParameters = "parameters.";
+  if (field.starts_with(kParameters)) {
+    const std::string_view item = field.substr(kParameters.size());
+    for (const std::string_view name : {item, item.substr(0, item.rfind('.'))})
+      if (const int i = FindParameter(name); i >= 0)
+        return ParameterTable()[static_cast<std::size_t>(i)].unit;
+    return "";
+  }
   for (const auto& [end, unit] : kUnits)
     if (field.ends_with(end)) return unit;
   return "";

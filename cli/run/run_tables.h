@@ -37,7 +37,8 @@ void CheckHoldsRun(const std::string& path, bool has_run, const McapSummary& sum
 /// a message that is not as expected, or a file that holds no run.
 RunTables ReadTables(const std::string& path, const Source& source, McapSummary* summary);
 
-/// The unit that the end of a field's name tells, or "".
+/// The unit of a field, or "": that of a parameter ("parameters.gravity.x") by its table, else what
+/// the end of its name tells.
 std::string_view UnitOf(std::string_view field);
 
 /// One topic. Throws std::runtime_error where it cannot be written.

@@ -66,7 +66,8 @@ bool SurfaceExploration::LeaveBlind(const Input& input, const ExplorationParamet
 SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
                                                       const ExplorationParameters& parameters,
                                                       double dt) {
-  if (++cycle_ > max_cycles_) return Status::kMaxCycles;  // line 3
+  if (cycle_ == max_cycles_) return Status::kMaxCycles;  // line 3
+  ++cycle_;
   if (LeaveBlind(input, parameters))
     return blind_cycles_ * dt < parameters.onto_tip_s ? Status::kRunning : Status::kBlind;
   const Matrix3d R_WC = RotationFromZ(input.normal_W);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "core/common/fnv1a.h"
 #include "core/files/names.h"
 #include "core/journal/check.h"
 #include "core/journal/checked_json.h"
@@ -224,12 +225,7 @@ EntryRead ParseEntry(std::string_view text, const SessionConfig& config) {
 }
 
 ModelHashes HashModels(const LoadedScenario& model) {
-  const auto hash = [](const Json& json) {
-    std::uint64_t value = 0xcbf29ce484222325ULL;  // FNV-1a
-    for (const char byte : json.dump())
-      value = (value ^ static_cast<unsigned char>(byte)) * 0x100000001b3ULL;
-    return value;
-  };
+  const auto hash = [](const Json& json) { return Fnv1a(json.dump()); };
   return {hash(fields::ToJson(model.scenario)), hash(fields::ToJson(model.hand)),
           hash(fields::ToJson(model.object))};
 }

@@ -98,8 +98,9 @@ inline constexpr std::array kInspectRows = {
         "tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, "
         "normals: outward (out of the object), friction, weight_n, max_force_n (what the "
         "controller reckons with), fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, "
-        "force_command_W_n}}; p_WC_m and normal_W are null without contact; evaluate takes this "
-        "answer as it is"},
+        "force_command_W_n}}; p_WC_m and normal_W are null without contact, p_WO_reference_m until "
+        "the "
+        "hand alone holds the object; evaluate takes this answer as it is"},
     MethodSpec{"describe", "call describe",
                "every method with its parameters, types, units and ranges", kDescribe, false,
                "version, protocol, methods, errors"},
@@ -128,12 +129,13 @@ inline constexpr std::array kInspectRows = {
         {},
         false,
         "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
-    MethodSpec{
-        "quality", "quality", "quality of the grasp", kQuality, false,
-        "tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, "
-        "measures: [NAME] and the value of each by its name, torque_scale_m "
-        "(mean distance of the contacts from the object's centre; torques are divided by "
-        "it), fingers: {NAME: {manipulability, load_margin_without_n, joint_limit_margin_rad}}"},
+    MethodSpec{"quality", "quality", "quality of the grasp", kQuality, false,
+               "tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, "
+               "measures: [NAME] and the value of each by its name, torque_scale_m "
+               "(mean distance of the contacts from the object's centre; torques are divided by "
+               "it), fingers: {NAME: {manipulability, load_margin_without_n, "
+               "joint_limit_margin_rad}}; measures "
+               "and margins are null while no finger that holds is in contact"},
     MethodSpec{"shape", "shape", "the object's surface as the fingers have felt it", kShape, false,
                "tick, time_s, object, touched_fraction (of all directions), touched_cells, cells, "
                "mean_radius_m, truth (for judging; null before anything was felt well: cells, "

@@ -83,9 +83,9 @@ void AddMeasures(const Frame& frame, const std::vector<GraspContact>& contacts, 
     const bool here = info.cost == MeasureCost::kOnRequest;
     if (here && !on_request) continue;
     names.push_back(info.name);
-    (*json)[std::string(info.name)] = !here              ? Json(frame.stability.of(info.id))
-                                      : contacts.empty() ? Json()
-                                                         : Json(info.compute(input));
+    (*json)[std::string(info.name)] = contacts.empty() ? Json()
+                                      : here           ? Json(info.compute(input))
+                                                       : Json(frame.stability.of(info.id));
   }
   (*json)["measures"] = std::move(names);
 }
@@ -108,7 +108,8 @@ Json ContactsJson(const Frame& frame, const HandModel& hand, const Parameters& p
           {"object",
            {{"p_WO_m", Vector(frame.p_WO_sensed)},
             {"q_WO_wxyz", Wxyz(frame.q_WO_sensed)},
-            {"p_WO_reference_m", Vector(frame.p_WO_reference)}}},
+            {"p_WO_reference_m",
+             HoldsAlone(frame.state, frame.stand_in) ? Vector(frame.p_WO_reference) : Json()}}},
           {"normals", "outward"},
           {"friction", frame.friction_counted},
           {"weight_n", Vector(parameters.control.mass_estimate * parameters.gravity_W)},
@@ -137,11 +138,12 @@ Json JointsJson(const Frame& frame, const HandModel& hand) {
 Json QualityJson(const Frame& frame, const HandModel& hand, bool on_request) {
   const std::vector<GraspContact> holding = HoldingContacts(frame);
   const StabilityFrame& s = frame.stability;
+  const auto known = [&holding](double x) { return holding.empty() ? Json() : Json(x); };
   Json fingers = Json::object();
   for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
     const FingerFrame& f = frame.fingers[i];
     fingers[hand.fingers[i].name] = {{"manipulability", f.manipulability},
-                                     {"load_margin_without_n", f.load_margin_without},
+                                     {"load_margin_without_n", known(f.load_margin_without)},
                                      {"joint_limit_margin_rad", f.joint_limit_margin}};
   }
   Json exploration;
@@ -155,10 +157,10 @@ Json QualityJson(const Frame& frame, const HandModel& hand, bool on_request) {
   Json json = {{"tick", frame.tick},
                {"time_s", frame.time_s},
                {"criterion", ActiveCriterion(frame)},
-               {"stability", s.active},
+               {"stability", known(s.active)},
                {"stability_measure", InfoOf(s.measure).name},
                {"threshold", s.threshold},
-               {"load_margin_n", s.load_margin}};
+               {"load_margin_n", known(s.load_margin)}};
   AddMeasures(frame, holding, on_request, &json);
   json["torque_scale_m"] = holding.empty() ? Json() : Json(TorqueScale(holding));
   json["exploration"] = std::move(exploration);
@@ -179,10 +181,11 @@ Json TruthJson(const Frame& frame, const HandModel& hand) {
   Json fingers = Json::object();
   for (std::size_t i = 0; i < frame.fingers.size(); ++i) {
     const FingerFrame& f = frame.fingers[i];
-    fingers[hand.fingers[i].name] = {{"in_contact", f.true_contact},
-                                     {"manipulability", f.true_manipulability},
-                                     {"p_WC_m", f.true_contact ? Vector(f.true_p_WC) : Json()},
-                                     {"p_WF_m", Vector(f.true_tip_W)}};
+    fingers[hand.fingers[i].name] = {
+        {"in_contact", f.true_contact},
+        {"manipulability", f.true_contact ? Json(f.true_manipulability) : Json()},
+        {"p_WC_m", f.true_contact ? Vector(f.true_p_WC) : Json()},
+        {"p_WF_m", Vector(f.true_tip_W)}};
   }
   return {{"tick", frame.tick},
           {"time_s", frame.time_s},

@@ -163,6 +163,16 @@ class BadModels(Case):
         shutil.copy(SOURCE / "models/objects/sphere.urdf", self.dir / "deep.urdf")
         self.refused(1, b"nested deeper than 32", "object", "show", self.dir / "deep.urdf")
 
+    def test_a_mistake_in_a_configuration_is_told(self):
+        # Each of these ended the command line by a signal, as the reader of TOML throws.
+        for line in ("seed = 0,5", 'seed = "5', '"gait.mode" = returning"', "{", '[parameters]\nobject.friction = 0,5'):
+            file = self.dir / "c.toml"
+            file.write_text(line + "\n")
+            self.refused(2, b"c.toml:", "param", "load", file)
+            done = subprocess.run([REGRASP, "status"], env=environment(REGRASP_CONFIG=str(file)), capture_output=True, timeout=HANG_S, check=False)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(b"c.toml:", done.stderr)
+
     def test_names_that_are_none(self):
         hand = (SOURCE / "models/hands/allegro.urdf").read_bytes()
         for name, cause in ((b"p\xe9lm", b"is not UTF-8"), (b"p&#27;[2Jlm", b"holds a control character")):

@@ -39,6 +39,16 @@ class Independence(ExperimentCase):
         self.assertTrue((self.dir / "cut" / "trials.jsonl").read_bytes().startswith(kept))
         self.assert_same_results("one", "cut")
 
+        # A line that is not as it was written is no trial: its unit runs again.
+        lines = (self.dir / "one" / "trials.jsonl").read_text().splitlines()
+        empty = json.loads(lines[1])
+        empty["rows"] = []
+        fallen = lines[2].replace('"rose":true', '"rose":false')
+        self.assertNotEqual(fallen, lines[2])
+        (self.dir / "cut" / "trials.jsonl").write_text("\n".join([lines[0], json.dumps(empty), fallen, lines[3]]) + "\n")
+        self.assertIn("2 of 4 are there already", self.explore("cut").stderr)
+        self.assert_same_results("one", "cut")
+
         # Nothing is left to do: the same results, no trial run.
         self.assertNotIn("seed", self.explore("cut").stderr)
         self.assert_same_results("one", "cut")

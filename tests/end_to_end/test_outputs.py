@@ -9,7 +9,9 @@ import json
 import os
 import pathlib
 import random
+import resource
 import shutil
+import signal
 import subprocess
 import time
 import unittest
@@ -115,6 +117,25 @@ class KilledTools(DaemonCase):
             self.assertEqual(subprocess.run(command, env=environment(), capture_output=True, check=False).returncode, 0)
             self.assertEqual(sorted(f.name for f in made.iterdir()), [target.name])
             self.remove(target)
+
+    def test_a_file_that_has_no_room_tells_so_and_leaves_nothing(self):
+        self.json("record", "start", "run.mcap", "--rate", "100")
+        self.expect(0, "grasp")
+        self.expect(0, "step", 3000, "--wait")
+        run = pathlib.Path(self.json("record", "stop")["path"])
+        made = self.dir / "made"
+
+        def small():  # as a disk that is full: 8 kB and no more
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+        for suffix, words in (("", ["export", "--format", "csv"]), (".npz", ["export", "--format", "npz"]), (".mcap", ["export", "--format", "mcap"]),
+                              (".mp4", ["video", "--to", "1"]), (".gif", ["video", "--to", "0.2"])):
+            command = [str(BIN / ("regrasp-film" if words[0] == "video" else "regrasp-run")), words[0], str(run), *words[1:],
+                       "--output", str(made / f"x{suffix}")]
+            done = subprocess.run(command, env=environment(), capture_output=True, text=True, preexec_fn=small, check=False)
+            self.assertEqual(done.returncode, 74, done.stderr)
+            self.assertIn("File too large", done.stderr, suffix)
+            self.assertEqual(sorted(f.name for f in made.iterdir()), [], suffix)
 
     @staticmethod
     def size(path):

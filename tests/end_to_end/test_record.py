@@ -80,6 +80,13 @@ class Runs(DaemonCase):
         self.assertEqual(len(angles), 22)
         self.assertTrue(all(column.endswith(" [rad]") for column in angles), angles)
         self.assertIn("t_s [s]", rows[0])
+        # The configuration: a parameter's unit is that of its table.
+        with open(self.dir / "csv" / "run.csv", encoding="utf-8") as file:
+            columns = next(csv.reader(file))
+        for unit in ("parameters.object.mass_kg.0 [kg]", "parameters.gravity.z [m/s2]", "parameters.control.grip_force.0 [N]",
+                     "parameters.exploration.dither_hz.0 [Hz]", "parameters.exploration.lambda.0", "noise.object_rate_hz [Hz]",
+                     "world.contact_stiffness_n_m [N/m]", "world.contact_damping_n_s_m [N s/m]"):
+            self.assertIn(unit, columns)
         arrays = read_npz(self.dir / "run.npz")
         shape, values = arrays["joints.angle_rad"]
         self.assertEqual(shape, (len(rows), 22))

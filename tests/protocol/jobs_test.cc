@@ -105,6 +105,30 @@ TEST_F(Jobs, AResetEndsThem) {
   EXPECT_EQ(client->Error("grasp"), 0);
 }
 
+TEST_F(Jobs, WhatAHandThatHoldsNothingDoesNotHaveIsNull) {
+  const auto none = [this] {
+    const Json quality = client->Result("quality");
+    for (const char* name : {"stability", "load_margin_n"})
+      EXPECT_TRUE(quality[name].is_null()) << name << ": " << quality[name];
+    for (const std::string measure : quality["measures"])
+      EXPECT_TRUE(quality[measure].is_null()) << measure;
+    for (const auto& [name, finger] : quality["fingers"].items())
+      EXPECT_TRUE(finger["load_margin_without_n"].is_null()) << name;
+    for (const auto& [name, finger] : client->Result("truth")["fingers"].items())
+      EXPECT_EQ(finger["manipulability"].is_null(), !finger["in_contact"]) << name;
+    EXPECT_TRUE(client->Result("contacts")["object"]["p_WO_reference_m"].is_null());
+  };
+  Step(10);
+  none();
+  client->Result("grasp");
+  Step(6000);
+  EXPECT_TRUE(client->Result("contacts")["object"]["p_WO_reference_m"].is_array());
+  EXPECT_TRUE(client->Result("quality")["load_margin_n"].is_number());
+  client->Result("release");
+  Step(3000);
+  none();
+}
+
 TEST_F(Jobs, AnExplorationsRecordIsComplete) {
   const Json grasp = client->Result("grasp")["job"];
   Step(6000);

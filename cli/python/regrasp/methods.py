@@ -40,7 +40,8 @@ class Methods:
         Returns tick, time_s, object: {p_WO_m, q_WO_wxyz, p_WO_reference_m (where control wants it)}, normals:
             outward (out of the object), friction, weight_n, max_force_n (what the controller reckons with),
             fingers: {NAME: {role, in_contact, p_WC_m, normal_W, force_n, force_command_W_n}}; p_WC_m and normal_W
-            are null without contact; evaluate takes this answer as it is.
+            are null without contact, p_WO_reference_m until the hand alone holds the object; evaluate takes this
+            answer as it is.
         """
         return self._ask("contacts", {})
 
@@ -235,7 +236,7 @@ class Methods:
         Returns tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, measures: [NAME]
             and the value of each by its name, torque_scale_m (mean distance of the contacts from the object's
             centre; torques are divided by it), fingers: {NAME: {manipulability, load_margin_without_n,
-            joint_limit_margin_rad}}.
+            joint_limit_margin_rad}}; measures and margins are null while no finger that holds is in contact.
         """
         return self._ask("quality", {"measures": measures})
 

@@ -131,6 +131,7 @@ TEST(SurfaceExploration, StopsAfterMaxCycles) {
     EXPECT_EQ(Explore(&algorithm, &finger, estimator, 1, 777, parameters, {}, [&] { ++ticks; }),
               Status::kMaxCycles);
     EXPECT_EQ(ticks, 777);
+    EXPECT_EQ(algorithm.cycle(), 777);
     parameters.max_cycles = 555;
     ticks = 0;
     EXPECT_EQ(Explore(&algorithm, &finger, estimator, 1, 0, parameters, {}, [&] { ++ticks; }),
