@@ -94,8 +94,8 @@ void SendScene(int out, const aiScene& scene, const MeshLimits& limits) {
   for (const Placed& part : placed) {
     static_assert(sizeof(aiVector3D) == 3 * sizeof(float));
     moved.assign(part.mesh->mVertices, part.mesh->mVertices + part.mesh->mNumVertices);
-    if (!part.X.IsIdentity())
-      for (aiVector3D& v : moved) v = part.X * v;
+    // (IsIdentity() is true of what is off by 0.01.)
+    for (aiVector3D& v : moved) v = part.X * v;
     Send(out, moved.data(), moved.size() * sizeof(aiVector3D));
   }
   std::uint32_t first = 0;

@@ -129,30 +129,5 @@ TEST_F(WildTest, AMeshInCentimetresIsToldSo) {
   ExpectEll(Load("<mesh filename=\"cm.obj\" " + scale + "/>"));
 }
 
-TEST_F(WildTest, AMirroredNodeOfACollada) {
-  std::string points, indices;
-  int corner = 0;
-  for (const Corners& corners : Ell())
-    for (const Vector3d& p : corners) {
-      points += fmt::format("{} {} {} ", p.x() / 1000, p.y() / 1000, p.z() / 1000);
-      indices += fmt::format("{} ", corner++);
-    }
-  for (const char* scale : {"1 1 1", "-1 1 1"}) {
-    Write(
-        "objects/node.dae",
-        fmt::format(
-            R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit name="meter" meter="1"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="a" count="180">{}</float_array><technique_common><accessor source="#a" count="60" stride="3">
-<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="20"><input semantic="VERTEX" source="#v" offset="0"/>
-<p>{}</p></triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node id="n">
-<scale>{}</scale><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>)",
-            points, indices, scale));
-    ExpectEll(Load("<mesh filename=\"node.dae\"/>"));
-  }
-}
-
 }  // namespace
 }  // namespace regrasp
