@@ -172,8 +172,10 @@ class Checker {
     const std::string name = node->Attribute("filename") ? node->Attribute("filename") : "";
     if (name.empty()) return values.Add(node->GetLineNum(), "<mesh> filename is missing");
     std::string why;
-    const fs::path file = ResolveMesh(path_, name, &why);
+    const auto [file, guess] = ResolveMesh(path_, name, &why);
     if (!why.empty()) values.Add(node->GetLineNum(), "<mesh> filename = {}: {}", Quoted(name), why);
+    if (!guess.empty() && guesses_.insert(guess).second)
+      problems_->Warn(node->GetLineNum(), "", "<mesh> filename = " + Quoted(name) + ": " + guess);
     node->SetAttribute("written", name.c_str());
     node->SetAttribute("filename", file.c_str());
   }
@@ -293,6 +295,7 @@ class Checker {
   std::vector<LinkPlace> links_;
   std::vector<JointPlace> joints_;
   std::map<std::string, int> link_index_, joint_index_;
+  std::set<std::string> guesses_;  // that have been told
 };
 
 }  // namespace

@@ -190,42 +190,6 @@ TEST_F(WildTest, ACentreOfMassFarOutsideALinkIsRefusedAndComputedWhenAsked) {
   EXPECT_EQ(LoaderTest::Load().hand.links[1].p_LCom, Vector3d(0, 0, 0.05));
 }
 
-TEST_F(WildTest, PathsOfOtherSystems) {
-  std::string text, faces;
-  int corner = 0;
-  for (const Corners& corners : Ell()) {
-    for (const Vector3d& p : corners)
-      text += fmt::format("v {} {} {}\n", p.x() / 1e3, p.y() / 1e3, p.z() / 1e3);
-    faces += fmt::format("f {} {} {}\n", corner + 1, corner + 2, corner + 3);
-    corner += 3;
-  }
-  fs::create_directories(root_ / "objects/meshes");
-  Write("objects/meshes/ell.obj", text + faces);
-  const std::string root = fs::absolute(root_).string();
-  for (const std::string& path :
-       {std::string("meshes/ell.obj"), std::string("./meshes/../meshes/ell.obj"),
-        std::string("meshes\\ell.obj"), std::string("package://objects/meshes/ell.obj"),
-        std::string("model://objects/meshes/ell.obj"), "file://" + root + "/objects/meshes/ell.obj",
-        root + "/objects/meshes/ell.obj"}) {
-    SCOPED_TRACE(path);
-    ExpectEll(Load(fmt::format("<mesh filename=\"{}\"/>", path)));
-  }
-  const fs::path elsewhere = root_ / "elsewhere/ell_description/meshes";
-  fs::create_directories(elsewhere);
-  fs::copy(root_ / "objects/meshes/ell.obj", elsewhere);
-  const std::string mesh = "<mesh filename=\"model://ell_description/meshes/ell.obj\"/>";
-  ExpectEll(Load(mesh));  // without its package, as it is often published
-  const std::string gone =
-      Refusal("<mesh filename=\"package://ell_description/meshes/gone.obj\"/>");
-  EXPECT_NE(gone.find("gone.obj\": file not found, nor its package"), std::string::npos) << gone;
-  for (const char* name : {"package://", "package:///", "package://ell_description"})
-    EXPECT_NE(Refusal(fmt::format("<mesh filename=\"{}\"/>", name)).find("$ROS_PACKAGE_PATH"),
-              std::string::npos);
-  ::setenv("GAZEBO_MODEL_PATH", ("/nowhere:" + root + "/elsewhere").c_str(), 1);
-  ExpectEll(Load(mesh));
-  ::unsetenv("GAZEBO_MODEL_PATH");
-}
-
 TEST_F(WildTest, WhatOtherProgramsAddIsPassedOver) {
   const std::string sphere = "<sphere radius=\"0.02\"/>";
   EXPECT_EQ(Load(sphere,
