@@ -5,6 +5,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -135,6 +136,13 @@ UrdfLink ToLink(const XMLElement& node, const urdf::Link& in) {
   return out;
 }
 
+/// Half a turn as files round it, -3.1416 or 3.142, is half a turn.
+double HalfTurnAtMost(double angle) {
+  constexpr double kRounded = 1e-3;
+  const bool rounded = std::abs(angle) > M_PI && std::abs(angle) <= M_PI + kRounded;
+  return rounded ? std::copysign(M_PI, angle) : angle;
+}
+
 UrdfJoint ToJoint(const XMLElement& node, const urdf::Joint& in) {
   using Type = UrdfJoint::Type;
   UrdfJoint out;
@@ -150,8 +158,8 @@ UrdfJoint ToJoint(const XMLElement& node, const urdf::Joint& in) {
   if (const Vector3d axis = ToVector(in.axis); axis.norm() > 0) out.axis = axis / axis.norm();
   if (in.limits) {
     out.limit_line = node.FirstChildElement("limit")->GetLineNum();
-    out.lower = in.limits->lower;
-    out.upper = in.limits->upper;
+    out.lower = HalfTurnAtMost(in.limits->lower);
+    out.upper = HalfTurnAtMost(in.limits->upper);
     out.effort = in.limits->effort;
   }
   if (in.dynamics) out.damping = in.dynamics->damping;

@@ -1,6 +1,7 @@
 /// What published files hold of joints: some that follow others or have no limit, palms of any
 /// orientation, postures on a limit.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -107,6 +108,25 @@ TEST_F(PublishedJoints, PosturesMayStandOnRoundedLimits) {
   EXPECT_EQ(Load().scenario.q_preshape[0], 0);
   EditScenario("A = 10", "A = -0.006");
   ExpectRefused({"mini.toml:10", "q_preshape_deg.A", "-0.006"});
+}
+
+TEST_F(PublishedJoints, ARoundedHalfTurnIsALimit) {
+  for (const char* half : {"3.1416", "3.142", "3.14159266"}) {
+    SCOPED_TRACE(half);
+    EditHand("lower=\"0\" upper=\"1.5\"", fmt::format("lower=\"-{0}\" upper=\"{0}\"", half));
+    EditScenario("A = 10", "A = -180");
+    const LoadedScenario loaded = Load();
+    EXPECT_EQ(loaded.hand.joints[0].lower, -M_PI);
+    EXPECT_EQ(loaded.hand.joints[0].upper, M_PI);
+    EXPECT_EQ(loaded.scenario.q_preshape[0], -M_PI);
+  }
+  EditHand("lower=\"0\" upper=\"1.5\"", "lower=\"0\" upper=\"3.15\"");
+  ExpectRefused({"mini.urdf:13", "joint \"A\"", "<limit> upper [rad] = 3.15; allowed -3.14159"});
+  // A coupled joint's are its own.
+  EditHand("upper=\"1.5\" effort=\"1\" velocity=\"10\"/>",
+           "upper=\"6.2832\" effort=\"1\" velocity=\"10\"/><mimic joint=\"A\"/>");
+  Write("hands/mini.toml", Replaced(Replaced(kScenarioToml, "B = 20.5\n", ""), "B = 70\n", ""));
+  EXPECT_EQ(Load().hand.joints[1].upper, 6.2832);
 }
 
 }  // namespace
