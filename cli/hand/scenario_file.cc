@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <stdexcept>
 
 #include "cli/hand/hand_command.h"
+#include "core/files/draft.h"
 
 namespace regrasp::hand {
 
@@ -47,13 +46,11 @@ std::string ScenarioFile::WayTo(const fs::path& file) const {
 }
 
 void ScenarioFile::Write(const std::string& text) const {
-  std::ofstream file(path_);
-  file << text;
-  file.close();
-  if (!file)
-    throw Failure(ExitCode::kIo,
-                  fmt::format("{}: cannot write: {}", path_.string(), std::strerror(errno)),
-                  "another place for -o");
+  try {
+    WriteWhole(path_.string(), text, Draft::Existing::kKeep);
+  } catch (const std::runtime_error& error) {
+    throw Failure(ExitCode::kIo, error.what(), "another place for -o");
+  }
 }
 
 }  // namespace regrasp::hand

@@ -22,7 +22,7 @@ class ScenarioFile {
   std::string NameOfObject(const std::string& object) const;
   /// The URDF likewise: nothing where it stands beside it under the same name.
   std::string NameOfUrdf(const std::filesystem::path& urdf) const;
-  /// Throws Failure(kIo).
+  /// The whole file or none. Throws Failure(kIo).
   void Write(const std::string& text) const;
 
  private:

@@ -3,9 +3,12 @@
 import json
 import math
 import re
+import resource
+import signal
+import subprocess
 import unittest
 
-from harness import Case
+from harness import HANG_S, REGRASP, Case, environment
 
 INERTIAL = '<inertial><origin xyz="0 0 {0}"/><mass value="{1}"/><inertia ixx="{2}" ixy="0" ixz="0" iyy="{2}" iyz="0" izz="{2}"/></inertial>'
 JOINT = """<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0 0 {yaw}"/>
@@ -253,6 +256,17 @@ class Hand(Case):
         self.expect(0, "grasp", "--wait")
         status = self.json("status")
         self.assertEqual((status["state"], status["object"]), ("holding", "flat"))
+
+    def test_a_scenario_that_the_disk_has_no_room_for_leaves_nothing(self):
+        def full():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100, resource.RLIM_INFINITY))
+
+        words = [REGRASP, "-q", "hand", "new", self.write("two.urdf", hand(2)), "-o", self.dir / "two.toml"]
+        done = subprocess.run(list(map(str, words)), env=environment(), preexec_fn=full, capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertEqual(done.returncode, 74, done.stderr)
+        self.assertIn("two.toml", done.stderr)
+        self.assertEqual([file.name for file in self.dir.iterdir() if file.suffix == ".toml"], [])
 
     def test_usage(self):
         four = self.write("four.urdf", hand(4))
