@@ -92,6 +92,8 @@ class Maker {
           fmt::format("{} is a scenario; `hand new` makes one from a .urdf file", options_.file),
           "regrasp hand check " + options_.file);
     urdf_ = FindHandFiles(options_.file, ModelSearchPath()).urdf;
+    named_urdf_ = out_.NameOfUrdf(urdf_);
+    named_object_ = out_.NameOfObject(object_);
     guess_ = GuessHand(urdf_);
     guess_.layout.armature = kArmature;
     hand_ = LoadHand(urdf_, guess_.layout, options_.load(), &report_);
@@ -184,7 +186,7 @@ class Maker {
       if (found.way.stuck >= 0 && k + 1 < count) continue;
       Scenario& scenario = found.model.scenario;
       scenario.name = scenario.hand = hand_.name;
-      scenario.object = object_.empty() ? BallFor(size_mm) : out_.NameOfObject(object_);
+      scenario.object = object_.empty() ? BallFor(size_mm) : named_object_;
       scenario.q_preshape = found.way.open;
       scenario.q_closed = found.way.closed;
       scenario.X_WO.translation() = found.grasp.p_WO;
@@ -243,7 +245,7 @@ class Maker {
 
   void Write(const Sheet& sheet) const {
     ScenarioText text;
-    text.urdf = out_.NameOfUrdf(urdf_);
+    text.urdf = named_urdf_;
     text.layout = guess_.layout;
     text.options = options_.load();
     text.scenario = best_.model.scenario;
@@ -260,8 +262,9 @@ class Maker {
   const Options& options_;
   ScenarioFile out_;
   fs::path urdf_;
-  std::string object_;  // "": a ball
-  ObjectModel body_;    // otherwise
+  std::string object_;                     // "": a ball
+  std::string named_urdf_, named_object_;  // as the scenario names them
+  ObjectModel body_;                       // otherwise
   ObjectBox box_;
   double size_mm_, tilt_;
   std::vector<double> sizes_mm_ = {size_mm_};  // of balls, tried until one is good

@@ -6,16 +6,32 @@
 
 #include "cli/hand/hand_command.h"
 #include "core/files/draft.h"
+#include "core/files/names.h"
 
 namespace regrasp::hand {
 
 namespace fs = std::filesystem;
+namespace {
+
+/// A path that a scenario can name.
+std::string InToml(std::string path) {
+  if (!IsUtf8(path))
+    throw Failure(ExitCode::kFailed, path + ": is not UTF-8; a scenario cannot name it",
+                  "rename the file or its directory");
+  return path;
+}
+
+}  // namespace
 
 void ScenarioFile::Check() const {
   if (path_.extension() != ".toml")
     throw Failure(ExitCode::kUsage,
                   fmt::format("-o {}: a scenario file must end in .toml", path_.string()),
                   "regrasp help hand new");
+  if (const std::string fault = NameFault(path_.filename().string()); !fault.empty())
+    throw Failure(ExitCode::kUsage,
+                  fmt::format("-o {}: the name of a scenario {}", path_.string(), fault),
+                  "another name for -o");
   std::error_code ignored;
   if (fs::exists(path_, ignored))
     throw Failure(ExitCode::kIo, fmt::format("{}: exists; nothing is overwritten", path_.string()),
@@ -29,13 +45,13 @@ void ScenarioFile::Check() const {
 std::string ScenarioFile::NameOfObject(const std::string& object) const {
   if (fs::path(object).extension() != ".urdf") return object;
   const std::string relative = WayTo(object);
-  return relative.empty() ? fs::absolute(object).string() : relative;
+  return InToml(relative.empty() ? fs::absolute(object).string() : relative);
 }
 
 std::string ScenarioFile::NameOfUrdf(const fs::path& urdf) const {
   const std::string relative = WayTo(urdf);
   if (relative == name() + ".urdf") return "";
-  return relative.empty() ? fs::absolute(urdf).string() : relative;
+  return InToml(relative.empty() ? fs::absolute(urdf).string() : relative);
 }
 
 std::string ScenarioFile::WayTo(const fs::path& file) const {

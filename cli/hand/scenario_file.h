@@ -18,7 +18,8 @@ class ScenarioFile {
 
   /// Throws Failure unless it can be made.
   void Check() const;
-  /// An object as the scenario names it: a name, or where its file is from there.
+  /// An object as the scenario names it: a name, or where its file is from there. Throws Failure
+  /// where that is no text.
   std::string NameOfObject(const std::string& object) const;
   /// The URDF likewise: nothing where it stands beside it under the same name.
   std::string NameOfUrdf(const std::filesystem::path& urdf) const;

@@ -5,14 +5,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/files/names.h"
+
 namespace regrasp {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
 
+/// A string of TOML, in which no control character may stand as it is.
 std::string Quoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      quoted += fmt::format("\\u{:04x}", byte);
+      continue;
+    }
     if (c == '"' || c == '\\') quoted += '\\';
     quoted += c;
   }
@@ -34,7 +42,7 @@ std::string Triple(const Vector3d& v, int digits) {
 
 std::string WriteScenario(const ScenarioText& text, const HandModel& hand) {
   std::string out;
-  for (const std::string& line : text.comments) out += "# " + line + "\n";
+  for (const std::string& line : text.comments) out += "# " + ShownText(line) + "\n";
   out += "# Every key, its unit and its meaning: models/README.md.\n";
   const HandLayout& layout = text.layout;
   const Scenario& scenario = text.scenario;

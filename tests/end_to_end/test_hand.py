@@ -274,6 +274,7 @@ class Hand(Case):
         self.assertIn("available are allegro", self.refused(6, "hand", "check", "gone"))
         self.assertIn("--seed is given twice", self.refused(2, "hand", "new", "x.urdf", "-o", "x.toml", "--seed", "1", "--seed", "2"))
         self.assertIn("must end in .toml", self.refused(2, "hand", "new", four, "-o", self.dir / "x.txt"))
+        self.assertIn("control character", self.refused(2, "hand", "new", four, "-o", self.dir / "a\nb.toml"))
         self.assertIn("no such directory", self.refused(74, "hand", "new", four, "-o", self.dir / "no" / "x.toml"))
         self.assertIn("20 to 150", self.refused(2, "hand", "new", four, "-o", self.dir / "x.toml", "--object-size", "500"))
         self.refused(2, "hand", "new", four)

@@ -85,6 +85,16 @@ TEST_F(PostureTest, FindsAGraspThatItsJudgementAndItsFileAgreeOn) {
               2e-5);
 }
 
+TEST_F(PostureTest, AScenarioNamesFilesWhateverTheyAreCalled) {
+  ScenarioText text;
+  text.urdf = "odd \"name\"\n[palm]\\ \x7f.urdf";
+  text.comments = {"made of\n[finger] " + text.urdf};
+  text.scenario.object = "\t\x1b.urdf";
+  fs::rename(Write("odd.urdf", kHandUrdf), directory_ / text.urdf);
+  const fs::path toml = Write("mine.toml", WriteScenario(text, {}));
+  EXPECT_EQ(FindHandFiles(toml.string(), {}).urdf, directory_ / text.urdf);
+}
+
 TEST_F(PostureTest, AScenarioThatNamesNoUrdfOrAMissingOneIsRefused) {
   const auto why = [&](const std::string& toml) {
     try {
