@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cli/hand/hand_command.h"
+#include "core/files/names.h"
 #include "core/posture/hand_guess.h"
 #include "core/session/session.h"
 #include "core/world/stepper_choice.h"
@@ -238,9 +239,9 @@ Answer CheckHand(const Options& options) {
     answer.json["joints"].push_back(JointJson(hand, j));
   answer.text = fmt::format(
       "{}: {} fingers, {} driven joints, {} coupled, {} links, {:.0f} g\n  {}\n  scenario: {}",
-      hand.name, hand.num_fingers(), hand.num_joints(), hand.num_coupled, hand.links.size(),
-      1e3 * mass, loaded.urdf,
-      loaded.scenario.empty() ? "none    (regrasp hand new)" : loaded.scenario);
+      ShownText(hand.name), hand.num_fingers(), hand.num_joints(), hand.num_coupled,
+      hand.links.size(), 1e3 * mass, ShownText(loaded.urdf),
+      loaded.scenario.empty() ? "none    (regrasp hand new)" : ShownText(loaded.scenario));
   for (const std::string& note : loaded.notes)
     if (!note.starts_with("finger ")) answer.text += "\n  " + note;
   answer.text += FingersText(hand) + FitsText(loaded.model.report);

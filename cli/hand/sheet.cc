@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/files/names.h"
+
 namespace regrasp::hand {
 namespace {
 
@@ -123,14 +125,14 @@ Answer Sheet::Tell() const {
   answer.text = fmt::format(
       "{}: load margin {:.2f} N, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
       "stepper {}: {}",
-      file.string(), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap), table,
-      Tried(), stepper, best.choice.reason);
+      ShownText(file.string()), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap),
+      table, Tried(), stepper, best.choice.reason);
   for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
   answer.text +=
       best.trial.held
-          ? fmt::format("\n  next: regrasp up --hand {}", file.string())
+          ? fmt::format("\n  next: regrasp up --hand {}", ShownText(file.string()))
           : fmt::format("\n  next: regrasp hand new {} -o OTHER.toml with another --seed or {}",
-                        urdf.string(), ball ? "--object-size" : "--object");
+                        ShownText(urdf.string()), ball ? "--object-size" : "--object");
   return answer;
 }
 

@@ -104,6 +104,11 @@ class Hand(Case):
         # The hand that ships has nothing to warn of.
         self.assertEqual(self.check("shadow")["warnings"], [])
 
+    def test_a_name_of_several_lines_is_told_in_one(self):
+        told = self.expect(0, "hand", "check", self.write("four\n\x1b[2J.urdf", hand(4))).stdout
+        self.assertIn("four\\x0a\\x1b[2J.urdf\n", told)
+        self.assertNotIn("\x1b", told)
+
     def test_everything_that_is_wrong_is_told_at_once(self):
         text = hand(3, effort=-1).replace('radius="0.008"', 'radius="0,008"', 1)
         error = self.refused(1, "hand", "check", self.write("bad.urdf", text))
