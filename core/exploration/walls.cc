@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/hand/damped_inverse.h"
+#include "core/hand/shape_distance.h"
 
 namespace regrasp {
 namespace {
@@ -56,21 +57,6 @@ Closest BetweenSegments(const Capsule& one, const Capsule& two) {
     }
   }
   return {one.a + s * d1, two.a + t * d2};
-}
-
-/// The point of a capsule's axis, or of a box, that is nearest to `p_W`.
-struct Nearest {
-  Vector3d on_W;
-  double radius = 0;  ///< of what is about it
-};
-Nearest NearestOf(const Shape& shape, const Isometry3d& X_WL, const Vector3d& p_W) {
-  if (shape.kind == Shape::Kind::kCapsule) {
-    const Capsule own{X_WL * shape.a_L, X_WL * shape.b_L, shape.radius};
-    return {BetweenSegments(own, {p_W, p_W}).on_one, shape.radius};
-  }
-  const Isometry3d X_WB = X_WL * shape.X_LB;
-  const Vector3d p_B = X_WB.inverse() * p_W;
-  return {X_WB * p_B.cwiseMax(-shape.half_extents).cwiseMin(shape.half_extents).eval()};
 }
 
 /// `direction`: of contact motion, any length; `depth` [m] along it. None where the direction is

@@ -9,6 +9,7 @@
 #include "core/gait/gait_parameters.h"
 #include "core/gait/sure_grasp.h"
 #include "core/gait/sure_reserve.h"
+#include "core/hand/shape_distance.h"
 #include "core/quality/load_margin.h"
 
 namespace regrasp {
@@ -53,19 +54,33 @@ double GapToObject(const Bones& bones, const ControlTick& tick, const Quaternion
   return gap;
 }
 
-/// For the link before the tip, where it would touch the object: there, or once the object has
-/// turned by `turn` [rad, rotation vector in W].
+/// Between what the last link has beside its fingertip, which is not felt, and the object, which
+/// stands for a ball as large as the grasp that the fingertip touches at `p_OC`; at most
+/// gait.link_clearance [m]. `turn`: of the object and the finger [W].
+double GapBeside(const ControlTick& tick, int finger, const FingerPosture& there,
+                 const Landing& landing, const Quaterniond& turn) {
+  const double radius = tick.estimate.object_scale;
+  const Vector3d middle_O = landing.p_OC - radius * landing.normal_O;
+  const Vector3d middle_W = tick.estimate.p_WO + turn * (tick.estimate.q_WO * middle_O);
+  return GapBesideTip(tick.hand.links[tick.hand.fingers[finger].tip_link], there.X_WT, middle_W,
+                      radius, tick.gait.link_clearance);
+}
+
+/// For the links that are not felt, where they would touch the object: there, or once the object
+/// has turned by `turn` [rad, rotation vector in W].
 double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& there,
-                   const Vector3d& turn_W) {
+                   const Landing& landing, const Vector3d& turn_W) {
   const Vector3d& p_WO = tick.estimate.p_WO;
   const Quaterniond q_OW = tick.estimate.q_WO.conjugate();
-  double gap = GapToObject(there.middle, tick, q_OW);
+  double gap = std::min(GapToObject(there.middle, tick, q_OW),
+                        GapBeside(tick, finger, there, landing, Quaterniond::Identity()));
   if (!turn_W.isZero()) {
     const Quaterniond turn = FromRotationVector(turn_W);
     const Vector3d p_WF = p_WO + turn * (there.p_WF - p_WO);
     const FingerPosture turned =
         ReachFor(tick.hand, finger, there, p_WF, 0.0, kReachSteps, tick.control.reach);
-    gap = std::min(gap, GapToObject(turned.middle, tick, q_OW * turn.conjugate()));
+    gap = std::min({gap, GapToObject(turned.middle, tick, q_OW * turn.conjugate()),
+                    GapBeside(tick, finger, turned, landing, turn)});
   }
   return tick.gait.landing_penalty *
          std::min(1.5, (tick.gait.link_clearance - gap) / tick.gait.link_touches);
@@ -135,7 +150,8 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   const bool listed =
       !shortlist_.full() || landing.score > shortlist_[shortlist_.size() - 1].landing.score;
   if (listed)
-    landing.score -= LinkPenalty(tick, finger, there, TurnAhead(tick, request_, landing.reserve));
+    landing.score -=
+        LinkPenalty(tick, finger, there, landing, TurnAhead(tick, request_, landing.reserve));
   return candidate;
 }
 
@@ -186,7 +202,7 @@ LandingPlan::Candidate LandingPlan::Stay(const ControlTick& tick) const {
       PostureAt(tick.hand, request_.finger, AnglesOf(tick.hand, request_.finger, tick.estimate.q));
   landing.score =
       CheapScore(tick, now, &landing) -
-      LinkPenalty(tick, request_.finger, now, TurnAhead(tick, request_, landing.reserve));
+      LinkPenalty(tick, request_.finger, now, landing, TurnAhead(tick, request_, landing.reserve));
   const double far2 =
       TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC, request_.home.normal_W)
           .squaredNorm();

@@ -115,6 +115,7 @@ FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q
     const double angle = joint.driver < 0 ? q[column] : joint.ratio * q[column] + joint.offset;
     X_WL.linear() = X_WL.linear() * Eigen::AngleAxisd(angle, joint.axis_J).toRotationMatrix();
   }
+  posture.X_WT = X_WL;
   posture.p_WF = X_WL * model.p_LF;
   posture.along_W = (posture.p_WF - X_WL.translation()).normalized();
   const Link& last = hand.links[model.tip_link];

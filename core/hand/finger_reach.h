@@ -28,6 +28,7 @@ struct FingerPosture {
   Bone tip;                              ///< of the fingertip
   Bones body, middle;  ///< the largest other shape of its link, and that of the link before
   FingerJacobian J;    ///< of the fingertip centre
+  Isometry3d X_WT = Isometry3d::Identity();  ///< of the tip link
 };
 
 /// All joints between palm and tip link, coupled ones too, root to tip.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/gait/sure_grasp.h"
+#include "core/hand/shape_distance.h"
 #include "tests/unit/gait/held_tick.h"
 
 namespace regrasp {
@@ -265,6 +266,36 @@ TEST_F(LandingPlanTest, KeepsTheLinkBeforeTheTipOffTheObject) {
   plan.Start(Home(first));
   Plan(&plan);
   EXPECT_GT(HeightOfMiddleLink(Tick(), first, plan.landing()), blocked + 0.001);
+}
+
+TEST_F(LandingPlanTest, KeepsWhatIsBesideTheFingertipOffTheObject) {
+  const int first = hand.FindFinger("first");
+  Link& last = model.hand.links[static_cast<std::size_t>(hand.fingers[first].tip_link)];
+  const auto posture = [&](const Landing& landing) {
+    return ReachFor(hand, first, PostureAt(hand, first, AnglesOf(hand, first, estimate.q)),
+                    estimate.p_WO + estimate.q_WO * landing.p_OF, 0.05, 20);
+  };
+  const auto gap = [&](const Landing& landing) {
+    return GapBesideTip(last, posture(landing).X_WT, estimate.p_WO, kRadius, 1);
+  };
+  LandingPlan plan;
+  plan.Start(Home(first));
+  Plan(&plan);
+  const Landing free = plan.landing();
+  // A knob grows beside the fingertip, 1 mm into the object where the finger would have stood.
+  const FingerPosture there = posture(free);
+  const Vector3d up = (there.p_WF - estimate.p_WO).normalized();
+  const Vector3d aside = TangentPart(there.along_W, up).normalized();
+  Shape knob;
+  knob.radius = 0.003;
+  knob.a_L = knob.b_L =
+      there.X_WT.inverse() * (estimate.p_WO + (kRadius + knob.radius - 0.001) *
+                                                  (std::cos(0.6) * up - std::sin(0.6) * aside));
+  last.shapes.push_back(knob);
+  ASSERT_NEAR(gap(free), -0.001, 1e-9);
+  plan.Start(Home(first));
+  Plan(&plan);
+  EXPECT_GT(gap(plan.landing()), 0);
 }
 
 // Of a friction cone about a normal that may be off by an angle, that much of its half angle is
