@@ -111,25 +111,14 @@ class HandReader {
   void ReadFinger(const HandLayout::Finger& layout) {
     Finger finger;
     finger.name = layout.name;
-    std::vector<int> chain;
     const int tip = file_.FindLink(layout.tip_link);
-    for (int joint = LinkAt(tip).parent_joint; joint >= 0;
-         joint = LinkAt(JointAt(joint).parent).parent_joint)
-      if (!tree_.LockedAt(joint)) chain.push_back(joint);
-    std::reverse(chain.begin(), chain.end());
-    for (const int j : chain) {
-      const int driver = tree_.CouplingOf(j).driver;
-      if (std::ranges::find(finger.joints, driver) == finger.joints.end())
-        finger.joints.push_back(driver);  // of the URDF until NumberJoints()
-    }
-    if (finger.joints.empty() || finger.joints.size() > std::size_t{kMaxFingerJoints}) {
-      problems_.Add(0,
-                    "finger \"{}\": {} revolute joints between root and \"{}\", coupled ones not "
-                    "counted; allowed 1 .. {}",
-                    layout.name, finger.joints.size(), layout.tip_link, kMaxFingerJoints);
+    finger.joints = tree_.DriversTo(tip);  // of the URDF until NumberJoints()
+    if (const std::string fault = HandTree::FingerFault(finger.joints.size(), layout.tip_link);
+        !fault.empty()) {
+      problems_.Add(0, "finger \"{}\": {}", layout.name, fault);
       problems_.ThrowIfAny();
     }
-    for (const int j : chain)
+    for (const int j : tree_.JointsTo(tip))
       if (!Added(j)) AddJoint(j);
     finger.tip_link = frames_.at(tip).link;
     hand_.fingers.push_back(finger);

@@ -1,9 +1,11 @@
 #include "core/hand/hand_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "core/common/limits.h"
 #include "core/hand/urdf_values.h"
 
 namespace regrasp {
@@ -45,6 +47,36 @@ HandTree::Coupling HandTree::CouplingOf(int j) const {
     c = {next, c.ratio * mimic->multiplier, c.ratio * mimic->offset + c.offset};
   }
   return {-1, 1, 0};
+}
+
+std::string HandTree::RatioFault(double ratio) {
+  constexpr double kLeast = 1e-3, kMost = 100;
+  if (std::abs(ratio) >= kLeast && std::abs(ratio) <= kMost) return "";
+  return fmt::format("= {:.6g}; allowed are sizes of {} .. {}", ratio, kLeast, kMost);
+}
+
+std::vector<int> HandTree::JointsTo(int to) const {
+  std::vector<int> chain;
+  for (int j = link(to).parent_joint; j >= 0; j = link(joint(j).parent).parent_joint)
+    if (!LockedAt(j)) chain.push_back(j);
+  std::ranges::reverse(chain);
+  return chain;
+}
+
+std::vector<int> HandTree::DriversTo(int to) const {
+  std::vector<int> drivers;
+  for (const int j : JointsTo(to)) {
+    const int driver = CouplingOf(j).driver;
+    if (std::ranges::find(drivers, driver) == drivers.end()) drivers.push_back(driver);
+  }
+  return drivers;
+}
+
+std::string HandTree::FingerFault(std::size_t drivers, const std::string& tip_link) {
+  if (drivers > 0 && drivers <= std::size_t{kMaxFingerJoints}) return "";
+  return fmt::format(
+      "{} revolute joints between root and \"{}\", coupled ones not counted; allowed 1 .. {}",
+      drivers, tip_link, kMaxFingerJoints);
 }
 
 std::size_t HandTree::FingersBelow(int j) const {
@@ -110,9 +142,8 @@ void HandTree::CheckMimic(int j, Problems* problems) const {
   const Coupling c = CouplingOf(j);
   if (c.driver < 0)
     problems->Add(in.line, "{}: <mimic> leads in a ring or to a joint that is not there", element);
-  else if (!(std::abs(c.ratio) >= 1e-3 && std::abs(c.ratio) <= 100))
-    problems->Add(in.line, "{}: <mimic> multiplier = {:.6g}; allowed are sizes of 0.001 .. 100",
-                  element, c.ratio);
+  else if (const std::string fault = RatioFault(c.ratio); !fault.empty())
+    problems->Add(in.line, "{}: <mimic> multiplier {}", element, fault);
 }
 
 void HandTree::Check(Problems* problems) const {

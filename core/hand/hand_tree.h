@@ -5,6 +5,8 @@
 
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/hand/problems.h"
 #include "core/hand/urdf.h"
@@ -34,8 +36,19 @@ class HandTree {
   /// or its driver is.
   std::optional<double> LockedAt(int j) const;
 
+  /// What is wrong with the ratio of a coupling, or "".
+  static std::string RatioFault(double ratio);
+
+  /// The joints with a drive that move a link, from the root on.
+  std::vector<int> DriversTo(int link) const;
+  /// What is wrong with so many of them before a fingertip, or "".
+  static std::string FingerFault(std::size_t drivers, const std::string& tip_link);
+
   /// Pose of the child link in the parent link with the joint at an angle.
   Isometry3d PoseAt(int j, double angle) const;
+
+  /// The joints that move a link, from the root on.
+  std::vector<int> JointsTo(int link) const;
 
   /// Adds every link of the body that carries `link`.
   void AddBodyOf(int link, std::set<int>* group) const;

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/files/names.h"
+#include "core/hand/scenario_names.h"
 #include "core/hand/toml_file.h"
 #include "core/hand/urdf.h"
 #include "core/hand/urdf_file.h"
@@ -141,24 +142,27 @@ void CheckPosture(const TomlFile& file, const char* key, const std::optional<Urd
   file.CheckKeys(table, names);
 }
 
-/// Throws the problems of a scenario with those of its hand. `urdf_file`: empty where it names none
-/// that is there. `refused`: why the hand could not be built; none where that follows from the
-/// scenario.
-void RefuseWithoutHand(const TomlFile& file, const fs::path& urdf_file,
-                       std::optional<ModelError> refused) {
+/// A hand's URDF as far as the scenario needs it.
+struct ReadHand {
   std::optional<UrdfFile> urdf;
-  if (!urdf_file.empty()) {
-    try {
-      Problems problems(urdf_file.string());
-      UrdfFile read = ReadUrdf(urdf_file, &problems);
-      problems.ThrowIfAny();
-      urdf = std::move(read);
-    } catch (const ModelError& error) {
-      if (!refused) refused = error;
-    }
+  std::optional<ModelError> refused;  ///< why not
+};
+
+ReadHand ReadHandUrdf(const fs::path& file) {
+  try {
+    Problems problems(file.string());
+    UrdfFile urdf = ReadUrdf(file, &problems);
+    problems.ThrowIfAny();
+    return {std::move(urdf), {}};
+  } catch (const ModelError& error) {
+    return {{}, error};
   }
-  for (const char* key : {"q_preshape_deg", "q_closed_deg"}) CheckPosture(file, key, urdf);
-  if (refused) file.Add(*refused);
+}
+
+/// Throws the problems of a scenario with those of its hand, which could not be built.
+void RefuseWithoutHand(const TomlFile& file, const ReadHand& hand) {
+  for (const char* key : {"q_preshape_deg", "q_closed_deg"}) CheckPosture(file, key, hand.urdf);
+  if (hand.refused) file.Add(*hand.refused);
   file.ThrowIfAny();
 }
 
@@ -241,12 +245,19 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   }
   HandLayout layout;
   ReadNumbers(file, &layout);
-  if (!ReadJoints(file, &layout) || !sees_all || no_urdf)
-    RefuseWithoutHand(file, urdf_file, no_urdf);
+  bool can_build = ReadJoints(file, &layout) && sees_all;
+  ReadHand read = no_urdf ? ReadHand{{}, no_urdf} : ReadHandUrdf(urdf_file);
+  if (read.urdf) {
+    const std::size_t before = file.count();
+    CheckScenarioNames(file, *read.urdf, sees_all);
+    can_build = can_build && file.count() == before;
+  }
+  if (!can_build || read.refused) RefuseWithoutHand(file, read);
   try {
     loaded.hand = LoadHand(urdf_file, layout, of_hand, &loaded.report);
   } catch (const ModelError& error) {
-    RefuseWithoutHand(file, urdf_file, error);
+    read.refused = error;
+    RefuseWithoutHand(file, read);
   }
   loaded.hand.name = toml_file.stem().string();
   scenario.name = scenario.hand = loaded.hand.name;

@@ -23,8 +23,17 @@ class TomlFile {
   const toml::table& root() const { return root_; }
 
   template <typename... Args>
+  void Add(int line, fmt::format_string<Args...> format, Args&&... args) const {
+    problems_.Add(line, format, std::forward<Args>(args)...);
+  }
+  template <typename... Args>
   void Add(const toml::node& at, fmt::format_string<Args...> format, Args&&... args) const {
-    problems_.Add(static_cast<int>(at.source().begin.line), format, std::forward<Args>(args)...);
+    Add(LineOf(at), format, std::forward<Args>(args)...);
+  }
+  /// Where a key or a value stands.
+  template <typename Source>
+  static int LineOf(const Source& at) {
+    return static_cast<int>(at.source().begin.line);
   }
   /// What a file that this one names was refused for.
   void Add(const ModelError& error) const { problems_.Add(error); }

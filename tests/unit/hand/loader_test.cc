@@ -167,7 +167,7 @@ TEST_F(LoaderTest, RefusesBadScenarios) {
        {"mini.toml:3", "armature_kg_m2", "0 .. 0.1"}},
       {"[0, 0, -9.81]", "[0, -9.81]", {"mini.toml:2", "gravity_m_s2", "3 numbers"}},
       {"[0, 0, -9.81]", "[0, 0, -981]", {"mini.toml:2", "gravity_m_s2", "-100 .. 100"}},
-      {"\"tip\"", "\"nail\"", {"mini.urdf", "finger \"only\"", "\"nail\"", "palm, tip, upper"}},
+      {"\"tip\"", "\"nail\"", {"mini.toml:8", "finger \"only\"", "\"nail\"", "palm, tip, upper"}},
       {"\"tip\"", "\"palm\"", {"finger \"only\"", "0 revolute joints", "1 .. 8"}},
       {"[q_preshape_deg]",
        "[[finger]]\nname = \"only\"\ntip_link = \"upper\"\n[q_preshape_deg]",

@@ -57,8 +57,40 @@ TEST_F(ScenarioProblems, TellsAllMistakesOfAScenarioInTheOrderOfItsLines) {
                  "mini.toml:14: unknown key \"D\"; allowed are A, B"});
   Write("hands/mini.toml",
         spoilt({"tip_link = \"tip\"", "tip_link = \"tap\"", "B = 20.5", "B = 400"}));
-  ExpectInOrder({"2 errors:\n  ", "mini.toml:11: q_preshape_deg.B",
-                 "mini.urdf: finger \"only\": there is no link \"tap\""});
+  ExpectInOrder({"2 errors:\n  ",
+                 "mini.toml:8: finger \"only\": there is no link \"tap\"; nearest is \"tip\"; "
+                 "links are palm, tip, upper",
+                 "mini.toml:11: q_preshape_deg.B"});
+}
+
+// What it says of links and joints is told with its lines, not with the URDF's.
+TEST_F(ScenarioProblems, NamesThatTheUrdfHasNotAreTheScenarios) {
+  const auto with = [&](const std::string& more) {
+    EditScenario("[q_preshape_deg]", more + "\n[q_preshape_deg]");
+  };
+  with("[locked_deg]\nBB = 3\nA = 2");
+  ExpectInOrder(
+      {"mini.toml:10: locked_deg: there is no joint \"BB\"; nearest is \"B\"; joints are "
+       "A, B"});
+  with("[coupled.B]\ndriver = \"B\"");
+  EXPECT_TRUE(Refusal().ends_with(
+      "mini.toml:10: coupled.B driver: leads in a ring or to a joint that is not there"))
+      << Refusal();
+  with("[coupled.B]\ndriver = \"A\"\nratio = 0");
+  EXPECT_TRUE(
+      Refusal().ends_with("mini.toml:11: coupled.B ratio, with those of what its driver "
+                          "follows, = 0; allowed are sizes of 0.001 .. 100"))
+      << Refusal();
+  // All of them, also those of what is wrong otherwise.
+  with("[coupled.Bee]\ndriver = \"Aa\"\nratio = \"x\"");
+  ExpectInOrder({"3 errors:\n  ", "mini.toml:9: coupled: there is no joint \"Bee\"; ",
+                 "mini.toml:10: coupled.Bee driver: there is no joint \"Aa\"; nearest is \"A\"",
+                 "mini.toml:11: ratio must be a number"});
+  EditScenario("tip_link = \"tip\"", "tip_link = \"palm\"");
+  EXPECT_TRUE(Refusal().ends_with(
+      "mini.toml:8: finger \"only\": 0 revolute joints between root and \"palm\", coupled ones not "
+      "counted; allowed 1 .. 8"))
+      << Refusal();
 }
 
 TEST_F(ScenarioProblems, WhatAHandLacksForAMisspeltKeyIsNotToldOfThePostures) {
