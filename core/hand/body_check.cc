@@ -37,21 +37,30 @@ std::set<double> Placeholders(const UrdfFile& file, const HandModel& hand) {
 
 }  // namespace
 
+std::string WhatLacks(const UrdfInertial& body) {
+  if (body.has_mass && body.has_inertia) return "";
+  if (body.has_mass) return "<inertial> has no <inertia>";
+  return body.has_inertia ? "<inertial> has no <mass>" : "<inertial> has no <mass>, no <inertia>";
+}
+
 int BodyLine(const UrdfLink& link) {
   return link.inertial ? link.inertial->inertia_line : link.line;
 }
 
-void CheckBodies(const UrdfFile& file, const LoadOptions& options, HandModel* hand,
-                 Problems* problems) {
+void CheckBodies(const UrdfFile& file, const std::map<int, const UrdfLink*>& lacking,
+                 const LoadOptions& options, HandModel* hand, Problems* problems) {
   const std::set<double> placeholders = Placeholders(file, *hand);
   std::map<double, std::vector<std::string>> guessed;  // links, by their placeholder
   for (std::size_t l = 1; l < hand->links.size(); ++l) {
     Link& link = hand->links[l];
     const UrdfLink& in = LinkOf(file, link);
     if (in.inertial && in.inertial->mass < 0) continue;  // told by AddBody
-    const int line = BodyLine(in);
-    const std::string element = LinkElement(link.name);
-    std::string why = WhyNoBody(link, in.inertial.has_value());
+    const auto part = lacking.find(static_cast<int>(l));
+    const UrdfLink& told = part != lacking.end() ? *part->second : in;
+    const int line = part != lacking.end() ? told.inertial->line : BodyLine(in);
+    const std::string element = LinkElement(told.name);
+    std::string why = part != lacking.end() ? WhatLacks(*told.inertial)
+                                            : WhyNoBody(link, in.inertial.has_value());
     const bool impossible = !why.empty();
     if (!impossible) why = WhyUnlikely(link);
     const double moment = MomentInAllAxes(file, link);

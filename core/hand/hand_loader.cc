@@ -43,7 +43,7 @@ class HandReader {
     for (const auto& finger : layout_.fingers) ReadFinger(finger);
     ReadRest(file_.root);
     CheckCounts();
-    CheckBodies(file_, options_, &hand_, &problems_);
+    CheckBodies(file_, lacking_, options_, &hand_, &problems_);
     problems_.ThrowIfAny();
     NumberJoints(tree_, order_, &hand_, &problems_);
     for (std::size_t f = 0; f < layout_.fingers.size(); ++f) FindFingertip(f);
@@ -73,6 +73,8 @@ class HandReader {
 
   void Merge(int in, const Isometry3d& X_LG, int link) {
     AddBody(LinkAt(in), X_LG, &hand_.links[static_cast<std::size_t>(link)]);
+    if (LinkAt(in).inertial && !WhatLacks(*LinkAt(in).inertial).empty())
+      lacking_.emplace(link, &LinkAt(in));
     for (const Shape& shape : shapes_.Read(LinkAt(in), X_LG, fingertips_->MayBe(in))) {
       hand_.links[static_cast<std::size_t>(link)].shapes.push_back(shape);
       shape_origin_[static_cast<std::size_t>(link)].push_back(in);
@@ -162,6 +164,7 @@ class HandReader {
   HandModel hand_;
   std::map<int, Frame> frames_;                 // by URDF link: our link that carries it, and where
   std::vector<int> order_;                      // of hand_.joints, as URDF joints
+  std::map<int, const UrdfLink*> lacking_;      // by link: CheckBodies
   std::vector<std::vector<int>> shape_origin_;  // by link and shape: URDF link
 };
 

@@ -30,6 +30,7 @@ void CheckLimits(const UrdfJoint& joint, const std::string& element, Problems* p
       problems->Add(joint.limit_line, "{}: <limit> lower = {:.6g} must be less than upper = {:.6g}",
                     element, joint.lower, joint.upper);
   }
+  if (!joint.has_effort) problems->Add(joint.limit_line, "{}: <limit> effort is missing", element);
   if (!(joint.effort >= 0))  // 0 is "not filled in": HandReader takes the default
     problems->Add(joint.limit_line, "{}: <limit> effort [N m] = {:.6g}; must be >= 0", element,
                   joint.effort);

@@ -118,15 +118,20 @@ class Checker {
 
   static void CheckInertial(XMLElement* node, const UrdfValues& values) {
     values.Origin(node);
-    XMLElement* mass = node->FirstChildElement("mass");
-    XMLElement* inertia = node->FirstChildElement("inertia");
     for (const char* once : {"origin", "mass", "inertia"}) AllowOne(*node, once, values);
-    if (mass == nullptr) values.Add(node->GetLineNum(), "<inertial> has no <mass>");
-    if (inertia == nullptr) values.Add(node->GetLineNum(), "<inertial> has no <inertia>");
-    if (mass != nullptr) values.Number(mass, "value");
-    if (inertia != nullptr)
-      for (const char* moment : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"})
-        values.Number(inertia, moment);
+    // What is missing is 0 to urdfdom; whether it is needed is for the loaders.
+    const auto numbers = [&](const char* name, std::initializer_list<const char*> attributes) {
+      XMLElement* child = node->FirstChildElement(name);
+      const bool lacking = child == nullptr;
+      if (lacking) (child = node->InsertNewChildElement(name))->SetAttribute(kLacking, "");
+      for (const char* attribute : attributes)
+        if (lacking)
+          child->SetAttribute(attribute, "0");
+        else
+          values.Number(child, attribute);
+    };
+    numbers("mass", {"value"});
+    numbers("inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"});
   }
 
   void CheckCollision(XMLElement* node, const UrdfValues& values) {
@@ -229,6 +234,10 @@ class Checker {
     if (limit != nullptr) {
       values.Number(limit, "lower", 0.0);
       values.Number(limit, "upper", 0.0);
+      if (limit->Attribute("effort") == nullptr) {
+        limit->SetAttribute(kLacking, "");
+        limit->SetAttribute("effort", "0");
+      }
       values.Number(limit, "effort");
     } else {
       limit = node->InsertNewChildElement("limit");

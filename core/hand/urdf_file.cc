@@ -92,7 +92,10 @@ Isometry3d ToIsometry(const urdf::Pose& pose) {
 UrdfInertial ToInertial(const XMLElement& node, const urdf::Inertial& in) {
   UrdfInertial out;
   out.line = node.GetLineNum();
-  out.inertia_line = node.FirstChildElement("inertia")->GetLineNum();
+  const XMLElement& inertia = *node.FirstChildElement("inertia");
+  out.has_mass = node.FirstChildElement("mass")->Attribute(kLacking) == nullptr;
+  out.has_inertia = inertia.Attribute(kLacking) == nullptr;
+  out.inertia_line = out.has_inertia ? inertia.GetLineNum() : out.line;
   out.mass = in.mass;
   out.X_LI = ToIsometry(in.origin);
   out.inertia << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
@@ -157,7 +160,9 @@ UrdfJoint ToJoint(const XMLElement& node, const urdf::Joint& in) {
   out.X_PJ = ToIsometry(in.parent_to_joint_origin_transform);
   if (const Vector3d axis = ToVector(in.axis); axis.norm() > 0) out.axis = axis / axis.norm();
   if (in.limits) {
-    out.limit_line = node.FirstChildElement("limit")->GetLineNum();
+    const XMLElement& limit = *node.FirstChildElement("limit");
+    out.limit_line = limit.GetLineNum();
+    out.has_effort = limit.Attribute(kLacking) == nullptr;
     out.lower = HalfTurnAtMost(in.limits->lower);
     out.upper = HalfTurnAtMost(in.limits->upper);
     out.effort = in.limits->effort;

@@ -38,7 +38,8 @@ struct UrdfCollision {
 
 /// Numbers as written; whether a body can have them is for the loaders.
 struct UrdfInertial {
-  int line = 0, inertia_line = 0;
+  int line = 0, inertia_line = 0;            ///< the second is the first without <inertia>
+  bool has_mass = true, has_inertia = true;  ///< else 0
   double mass = 0;                           ///< [kg]
   Isometry3d X_LI = Isometry3d::Identity();  ///< centre of mass, axes of the inertia
   Matrix3d inertia = Matrix3d::Zero();       ///< [kg m²]
@@ -69,6 +70,7 @@ struct UrdfJoint {
   Vector3d axis = Vector3d::UnitX();  ///< unit
   double lower = 0, upper = 0, effort = 0;
   int limit_line = 0;             ///< 0: no <limit>
+  bool has_effort = true;         ///< the <limit>; else 0
   std::optional<double> damping;  ///< [N m s/rad]
   std::optional<UrdfMimic> mimic;
 };

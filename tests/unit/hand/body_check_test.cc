@@ -42,7 +42,7 @@ class BodyCheck : public ::testing::Test {
     Problems problems("hand.urdf", &report);
     LoadOptions options;
     options.inertia_from_shape = inertia_from_shape;
-    CheckBodies(file_, options, &hand_, &problems);
+    CheckBodies(file_, {}, options, &hand_, &problems);
     std::vector<std::string> lines;
     try {
       problems.ThrowIfAny();

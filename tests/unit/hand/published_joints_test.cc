@@ -103,6 +103,23 @@ TEST_F(PublishedJoints, AContinuousJointNeedsNoLimit) {
   EXPECT_DOUBLE_EQ(Load().hand.joints[0].effort, kDefaultEffort);
 }
 
+TEST_F(PublishedJoints, AJointWithoutADriveNeedsNoEffort) {
+  const std::string limit = "effort=\"1\" velocity=\"10\"/>", none = "velocity=\"10\"/>";
+  const std::string alone = Replaced(Replaced(kScenarioToml, "B = 20.5\n", ""), "B = 70\n", "");
+  EditHand(limit, none);
+  Write("hands/mini.toml", kScenarioToml);
+  ExpectRefused({"mini.urdf:15", "joint \"B\": <limit> effort is missing"});
+  for (const char* table : {"[locked_deg]\nB = 5", "[coupled.B]\ndriver = \"A\""}) {
+    SCOPED_TRACE(table);
+    Write("hands/mini.toml",
+          Replaced(alone, "[q_preshape_deg]", table + std::string("\n[q_preshape_deg]")));
+    EXPECT_EQ(Load().hand.num_joints(), 1);
+  }
+  EditHand(limit, none + "<mimic joint=\"A\"/>");
+  Write("hands/mini.toml", alone);
+  EXPECT_EQ(Load().hand.num_coupled, 1);
+}
+
 TEST_F(PublishedJoints, PosturesMayStandOnRoundedLimits) {
   EditScenario("A = 10", "A = -0.005");
   EXPECT_EQ(Load().scenario.q_preshape[0], 0);

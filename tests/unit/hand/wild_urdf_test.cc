@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string>
+#include <tuple>
 
 #include "core/hand/urdf.h"
 #include "tests/unit/hand/wild_files.h"
@@ -105,6 +106,40 @@ TEST_F(WildTest, ANegativeMassIsToldOnce) {
     EXPECT_NE(text.find("<mass> = -0.01; must be > 0"), std::string::npos) << text;
     EXPECT_EQ(text.find("<mass> = 0;"), std::string::npos) << text;
   }
+}
+
+TEST_F(WildTest, WhatAnInertialHasNotTheShapeGives) {
+  const std::string
+      mass = "<mass value=\"0.01\"/>",
+      inertia = "<inertia ixx=\"2e-6\" ixy=\"0\" ixz=\"0\" iyy=\"2e-6\" iyz=\"0\" izz=\"1e-6\"/>";
+  LoadOptions options;
+  options.inertia_from_shape = true;
+  EditHand("<inertial>" + mass + inertia + "</inertial>", "");
+  const Link none = LoadScenario("mini", "", {root_}, options).hand.links[2];
+  for (const auto& [given, told, kept] :
+       {std::tuple{mass, "<inertial> has no <inertia>", 0.01},
+        std::tuple{inertia, "<inertial> has no <mass>", none.mass},
+        std::tuple{std::string(), "<inertial> has no <mass>, no <inertia>", none.mass}}) {
+    SCOPED_TRACE(told);
+    EditHand(mass + inertia, given);
+    const std::string why = std::string("mini.urdf:9: link \"tip\": ") + told;
+    ExpectRefused({(why + "; --inertia-from-shape computes what is missing").c_str()});
+    const LoadedScenario loaded = LoadScenario("mini", "", {root_}, options);
+    EXPECT_DOUBLE_EQ(loaded.hand.links[2].mass, kept);
+    EXPECT_TRUE(loaded.hand.links[2].I_LCom.isApprox(none.I_LCom * (kept / none.mass)));
+    EXPECT_TRUE(std::ranges::any_of(loaded.report.warnings, [&](const ModelWarning& warning) {
+      return warning.Line().find(why + "; ") != std::string::npos;
+    }));
+  }
+  // Of a part that is fixed to a link that moves, too; of the palm nothing is needed.
+  const std::string part = "<link name=\"nail\"><inertial>" + mass +
+                           "</inertial></link>\n<joint name=\"fix\" type=\"fixed\"><parent "
+                           "link=\"{}\"/><child link=\"nail\"/></joint></robot>";
+  EditHand("</robot>", fmt::format(fmt::runtime(part), "tip"));
+  ExpectRefused({"link \"nail\": <inertial> has no <inertia>; --inertia-from-shape"});
+  EXPECT_DOUBLE_EQ(LoadScenario("mini", "", {root_}, options).hand.links[2].mass, 0.02);
+  EditHand("</robot>", fmt::format(fmt::runtime(part), "palm"));
+  EXPECT_EQ(LoaderTest::Load().hand.links.size(), 3u);
 }
 
 TEST_F(WildTest, TheSameMomentInAllAxesOfSeveralLinksIsAPlaceholder) {
