@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "core/hand/body_check.h"
 #include "core/hand/object_pieces.h"
 #include "core/hand/rigid_body.h"
 #include "core/hand/solid.h"
@@ -33,20 +35,18 @@ class ObjectReader {
     Isometry3d X_OL = Isometry3d::Identity();
     X_OL.linear() = R_OL_;
     for (UrdfCollision& collision : collisions_) collision.X_LG = X_OL * collision.X_LG;
-    if (!body.inertial)
-      problems_.Add(body.line, "{}: has no <inertial>", element_);
-    else if (!(body.inertial->mass > 0))
-      problems_.Add(body.inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_,
-                    body.inertial->mass);
+    const bool has_mass = CheckMass(body);
+    if (body.inertial) inertial_ = *body.inertial;
+    inertial_.X_LI = X_OL * inertial_.X_LI;
+    from_shape_ = options_.inertia_from_shape || !body.inertial;
+    object_.name = file_.name;
+    const std::size_t before = problems_.count();
     if (collisions_.empty())
       problems_.Add(body.line, "{}: has no <collision>; an object has at least one", element_);
-    problems_.ThrowIfAny();
-    inertial_ = *body.inertial;
-    inertial_.X_LI = X_OL * inertial_.X_LI;
-    object_.name = file_.name;
-    ReadShape();
-    problems_.ThrowIfAny();
-    ReadBody();
+    else
+      ReadShape();
+    const bool has_shape = problems_.count() == before;
+    if (body.inertial) ReadBody(has_mass && has_shape);
     problems_.ThrowIfAny();
     facts_.p_LCom = R_OL_.transpose() * facts_.p_LCom;
     if (facts_out_ != nullptr) *facts_out_ = facts_;
@@ -54,6 +54,18 @@ class ObjectReader {
   }
 
  private:
+  bool CheckMass(const UrdfLink& body) {
+    const std::size_t before = problems_.count();
+    if (!body.inertial)
+      problems_.Add(body.line, "{}: has no <inertial>; an object needs its <mass>", element_);
+    else if (!body.inertial->has_mass)
+      problems_.Add(body.inertial->line, "{}: <inertial> has no <mass>", element_);
+    else if (!(body.inertial->mass > 0))
+      problems_.Add(body.inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_,
+                    body.inertial->mass);
+    return problems_.count() == before;
+  }
+
   /// The shape, about the centre of mass.
   void ReadShape() {
     using Kind = UrdfGeometry::Kind;
@@ -62,7 +74,7 @@ class ObjectReader {
     facts_.collisions = static_cast<int>(collisions_.size());
     facts_.pieces = 1;
     // A homogeneous body has its centre of mass in its middle.
-    facts_.p_LCom = options_.inertia_from_shape ? first.X_LG.translation() : PCom();
+    facts_.p_LCom = from_shape_ ? first.X_LG.translation() : PCom();
     const Matrix3d& R = first.X_LG.linear();
     const bool whole =
         geometry.kind == Kind::kSphere || (geometry.kind == Kind::kBox && R.isIdentity(1e-9));
@@ -82,10 +94,11 @@ class ObjectReader {
 
   void ReadPieces() {
     object_.kind = ObjectModel::Kind::kMesh;
+    const std::size_t before = problems_.count();
     TriangleMesh mesh = JoinPieces(collisions_, element_, &problems_);
-    problems_.ThrowIfAny();
+    if (problems_.count() > before) return;
     const Solid solid = PiecesSolid(mesh, &facts_.overlap_m3);
-    facts_.p_LCom = options_.inertia_from_shape ? solid.centre : PCom();
+    facts_.p_LCom = from_shape_ ? solid.centre : PCom();
     facts_.pieces = static_cast<int>(PiecesOf(mesh).size());
     object_.vertices_O = std::move(mesh.vertices);
     object_.triangles = std::move(mesh.triangles);
@@ -115,19 +128,24 @@ class ObjectReader {
                   kMin, kMax, fix);
   }
 
-  void ReadBody() {
+  /// `whole`: mass and shape are there, so that what follows from them can be told.
+  void ReadBody(bool whole) {
+    const int line = inertial_.inertia_line;
+    const auto computes = [&](const std::string& why) {
+      problems_.Add(line, "{}: {}; --inertia-from-shape computes it", element_, why);
+    };
     const Matrix3d R = inertial_.X_LI.linear();
     object_.mass = inertial_.mass;
     object_.I_OCom = R * inertial_.inertia * R.transpose();
-    if (options_.inertia_from_shape) {
+    if (from_shape_ && !whole) return;
+    if (from_shape_) {
       const Solid solid = ObjectSolid(object_);
       object_.I_OCom = solid.inertia * (object_.mass / solid.volume);
+    } else if (!inertial_.has_inertia) {
+      return computes(WhatLacks(inertial_));
     }
-    const int line = inertial_.inertia_line;
-    if (const std::string why = WhyNoInertia(object_.I_OCom); !why.empty()) {
-      problems_.Add(line, "{}: {}; --inertia-from-shape computes it", element_, why);
-      return;
-    }
+    if (const std::string why = WhyNoInertia(object_.I_OCom); !why.empty()) return computes(why);
+    if (!whole) return;
     for (const Impossible& reason : WhyNoBody(object_)) {
       if (options_.force)
         problems_.Warn(line, element_, reason.why + "; taken because of --force");
@@ -146,6 +164,7 @@ class ObjectReader {
   ObjectFacts* facts_out_;
   ObjectFacts facts_;
   Matrix3d R_OL_;
+  bool from_shape_ = false;  // centre and inertia
   std::string element_;
   std::vector<UrdfCollision> collisions_;
   UrdfInertial inertial_;
@@ -166,19 +185,29 @@ ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions o
   std::error_code ignored;
   double friction = ObjectModel().friction;
   Matrix3d R_OL = Matrix3d::Identity();
+  std::optional<TomlFile> file;
   if (std::filesystem::is_regular_file(toml_file, ignored)) {
-    const TomlFile file(toml_file);
-    file.CheckKeys(file.root(), {"friction", "rotation_deg", "inertia_from_shape", "force"});
-    if (const toml::node* node = file.root().get("friction"))
-      friction = file.Number(*node, "friction", 1e-3, 1);
-    if (file.root().contains("rotation_deg"))
-      R_OL = FromRotationVector(file.Vector(file.root(), "rotation_deg", 360) * M_PI / 180)
+    file.emplace(toml_file);
+    const toml::table& root = file->root();
+    file->CheckKeys(root, {"friction", "rotation_deg", "inertia_from_shape", "force"});
+    options.inertia_from_shape |= file->Flag(root, "inertia_from_shape");
+    options.force |= file->Flag(root, "force");
+    // A misspelt flag, say: the URDF is not blamed for what the flags would mend.
+    if (file->count() > 0) options.inertia_from_shape = options.force = true;
+    if (const toml::node* node = root.get("friction"))
+      friction = file->Number(*node, "friction", 1e-3, 1);
+    if (root.contains("rotation_deg"))
+      R_OL = FromRotationVector(file->Vector(root, "rotation_deg", 360) * M_PI / 180)
                  .toRotationMatrix();
-    options.inertia_from_shape |= file.Flag(file.root(), "inertia_from_shape");
-    options.force |= file.Flag(file.root(), "force");
-    file.ThrowIfAny();
   }
-  ObjectModel model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL);
+  ObjectModel model;
+  try {
+    model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL);
+  } catch (const ModelError& error) {
+    if (!file) throw;
+    file->Add(error);
+  }
+  if (file) file->ThrowIfAny();
   model.name = urdf_file.stem().string();
   model.friction = friction;
   return model;

@@ -37,6 +37,7 @@ TriangleMesh MeshOf(const UrdfGeometry& geometry) {
 TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::string& element,
                         Problems* problems) {
   TriangleMesh whole;
+  const std::size_t before = problems->count();
   for (const UrdfCollision& piece : pieces) {
     TriangleMesh mesh;
     try {
@@ -53,7 +54,7 @@ TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::str
       whole.triangles.push_back(t + Eigen::Vector3i::Constant(base));
   }
   constexpr std::size_t kMaxVertices = 200000;
-  if (problems->empty() && whole.vertices.size() > kMaxVertices)
+  if (problems->count() == before && whole.vertices.size() > kMaxVertices)
     problems->Add(0, "the pieces have {} vertices; allowed are at most {}", whole.vertices.size(),
                   kMaxVertices);
   return whole;
