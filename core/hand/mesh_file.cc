@@ -13,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -96,6 +97,14 @@ std::vector<std::byte> Receive(const fs::path& file, int in, const MeshLimits& l
   return bytes;
 }
 
+/// What Git leaves of a large file that was not fetched.
+bool IsLfsPointer(const fs::path& file) {
+  constexpr std::string_view kBegin = "version https://git-lfs.github.com/spec/";
+  std::string begin(kBegin.size(), '\0');
+  std::ifstream in(file, std::ios::binary);
+  return in.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == kBegin;
+}
+
 MeshKind CheckFile(const fs::path& file, const MeshLimits& limits) {
   const std::string suffix = InLowerCase(file.extension().string());
   if (std::ranges::find(kSuffixes, suffix) == kSuffixes.end())
@@ -103,6 +112,7 @@ MeshKind CheckFile(const fs::path& file, const MeshLimits& limits) {
                            fmt::join(kSuffixes, ", ")));
   std::error_code error;
   if (const std::string why = WhyNoFile(file); !why.empty()) Fail(file, why);
+  if (IsLfsPointer(file)) Fail(file, "a Git LFS pointer, not the mesh; run git lfs pull");
   const auto size = fs::file_size(file, error);
   if (error || size > limits.file_bytes)
     Fail(file,

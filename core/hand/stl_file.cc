@@ -42,10 +42,12 @@ bool HasAttributes(std::string_view bytes, std::size_t triangles) {
   return at == bytes.size();
 }
 
-/// As text does, behind a byte order mark or not.
-bool BeginsAsText(std::string_view head) {
-  if (head.starts_with(kByteOrderMark)) head.remove_prefix(kByteOrderMark.size());
-  return head.starts_with("solid") || head.starts_with("SOLID");
+/// Behind a byte order mark, blank lines or not.
+bool BeginsAsText(std::istream* in) {
+  in->clear();
+  in->seekg(0);
+  SkipByteOrderMark(in);
+  return SkipToSolid(in);
 }
 
 }  // namespace
@@ -58,7 +60,7 @@ std::optional<std::uint64_t> BinaryStlRest(const std::filesystem::path& file, st
   const bool whole = size >= kHead && in.gcount() == static_cast<std::streamsize>(kHead);
   const std::uint64_t wanted = kHead + kTriangle * std::uint64_t{Claimed(head)};
   if (whole && size >= wanted) return size - wanted;
-  if (BeginsAsText(head)) return std::nullopt;
+  if (BeginsAsText(&in)) return std::nullopt;
   if (!whole)
     throw ModelError(
         fmt::format("{} bytes that do not begin with \"solid\" are no STL file", size));

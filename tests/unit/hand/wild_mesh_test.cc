@@ -41,10 +41,14 @@ TEST_F(WildTest, StlInMillimetresOfEitherKind) {
   text += "endsolid ell\n";
   Write("objects/text.stl", text);
   Write("objects/bom.stl", "\xEF\xBB\xBF" + text);
+  const std::string small = text;
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::toupper(c); });
   Write("objects/CAPITALS.STL", text);
+  Write("objects/blank.stl", "\r\n \t\n" + text);
+  Write("objects/both.stl", "\xEF\xBB\xBF" + std::string(200, '\n') + "S" + small.substr(1));
   Write("objects/BINARY.STL", BinaryEll());
-  for (const char* file : {"text.stl", "bom.stl", "CAPITALS.STL", "BINARY.STL"}) {
+  for (const char* file :
+       {"text.stl", "bom.stl", "blank.stl", "both.stl", "CAPITALS.STL", "BINARY.STL"}) {
     SCOPED_TRACE(file);
     const std::string mesh = fmt::format("<mesh filename=\"{}\"", file);
     const std::string refusal = Refusal(mesh + "/>");
@@ -127,6 +131,17 @@ TEST_F(WildTest, AMeshInCentimetresIsToldSo) {
   EXPECT_NE(refusal.find("if the file is in centimetres: <mesh " + scale + ">"), std::string::npos)
       << refusal;
   ExpectEll(Load("<mesh filename=\"cm.obj\" " + scale + "/>"));
+}
+
+TEST_F(WildTest, WhatGitLeavesOfAMeshThatWasNotFetchedIsNamed) {
+  for (const char* suffix : {".obj", ".stl", ".ply", ".dae", ".glb"}) {
+    Write(std::string("objects/lfs") + suffix,
+          "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n");
+    const std::string refusal = Refusal(fmt::format("<mesh filename=\"lfs{}\"/>", suffix));
+    EXPECT_TRUE(refusal.ends_with(
+        fmt::format("lfs{}: a Git LFS pointer, not the mesh; run git lfs pull", suffix)))
+        << refusal;
+  }
 }
 
 }  // namespace
