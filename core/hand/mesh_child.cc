@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/hand/gltf_check.h"
 #include "core/hand/mesh_text.h"
 #include "core/hand/ply_file.h"
 #include "core/hand/stl_file.h"
@@ -127,6 +128,8 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_DropNormals;
 
 void ReadByAssimp(int out, const std::string& file, const std::string& suffix,
                   const MeshLimits& limits) {
+  if (suffix == ".glb")
+    if (const std::string why = WhyNoGltf(file); !why.empty()) return SendError(out, why);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const std::string text = TextForAssimp(file, suffix);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include "core/hand/mesh.h"
 #include "tests/unit/hand/wild_files.h"
@@ -36,6 +37,13 @@ std::string Word(std::size_t number) {
   return {reinterpret_cast<const char*>(&word), sizeof(word)};
 }
 
+std::string Container(std::string json, std::string bytes) {
+  json.append((4 - json.size() % 4) % 4, ' ');
+  bytes.append((4 - bytes.size() % 4) % 4, '\0');
+  return "glTF" + Word(2) + Word(12 + 8 + json.size() + 8 + bytes.size()) + Word(json.size()) +
+         "JSON" + json + Word(bytes.size()) + std::string("BIN\0", 4) + bytes;
+}
+
 /// A binary glTF file of the L [m]. `nodes`: of the scene, of which there are `count`; mesh 0 is
 /// the L. `more`: of the JSON object.
 std::string Glb(const std::string& nodes, int count = 1, const std::string& more = "") {
@@ -45,14 +53,12 @@ std::string Glb(const std::string& nodes, int count = 1, const std::string& more
       const Eigen::Vector3f single = (p / 1000).cast<float>();
       points.append(reinterpret_cast<const char*>(single.data()), 12);
     }
-  std::string json = fmt::format(
+  const std::string json = fmt::format(
       R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[{}]}}],"nodes":[{}],
 "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"buffers":[{{"byteLength":{}}}],"bufferViews":[{{"buffer":0,"byteLength":{}}}],
 "accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3"}}]{}}})",
       count == 1 ? "0" : "0,1", nodes, points.size(), points.size(), points.size() / 12, more);
-  json.append((4 - json.size() % 4) % 4, ' ');
-  return "glTF" + Word(2) + Word(12 + 8 + json.size() + 8 + points.size()) + Word(json.size()) +
-         "JSON" + json + Word(points.size()) + std::string("BIN\0", 4) + points;
+  return Container(json, points);
 }
 
 TEST_F(WildTest, AMirroredNodeOfACollada) {
@@ -113,6 +119,58 @@ TEST_F(WildTest, TwoNodesOfOneMeshNearTheOriginAreTwo) {
     // The L is 20 mm thick: moved apart by 16 mm they are a union 36 mm thick, measured by columns.
     EXPECT_NEAR(ObjectSolid(object).volume, 1.8 * kEllVolume * 1e-9, 0.01 * kEllVolume * 1e-9);
   }
+}
+
+std::string Required(const std::string& extension) {
+  return ",\"extensionsUsed\":[\"" + extension + "\"],\"extensionsRequired\":[\"" + extension +
+         "\"]";
+}
+
+// glTF demands it. Read by assimp all the same, each of them gives another body.
+TEST_F(WildTest, AGltfExtensionThatIsNotReadIsNamed) {
+  const std::string node = "{\"mesh\":0}", mesh = "<mesh filename=\"e.glb\"/>";
+  for (const char* extension :
+       {"KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"}) {
+    Write("objects/e.glb", Glb(node, 1, Required(extension)));
+    const std::string refusal = Refusal(mesh);
+    EXPECT_NE(refusal.find(fmt::format("e.glb: cannot read the mesh: requires the glTF extension "
+                                       "{}, which is not read; export it without",
+                                       extension)),
+              std::string::npos)
+        << refusal;
+  }
+  Write("objects/e.glb", Glb(node, 1, Required("KHR_materials_unlit")));
+  ExpectEll(Load(mesh));
+  // Integers without the extension that allows them.
+  Write("objects/e.glb", Replaced(Glb(node), "5126", "5122"));
+  const std::string refusal = Refusal(mesh);
+  EXPECT_NE(refusal.find("its corners are no floats"), std::string::npos) << refusal;
+}
+
+/// A box of 24 x 60 x 30 mm, written by draco_encoder -qp 16.
+std::string DracoBox() {
+  constexpr std::string_view kHex =
+      "445241434f02020101000000080c000b0000035f4b1501011001ff00000100090300000201010100"
+      "1103011001083301280400ba1c81cccc0000000000000100ffffc832b30040ff3f96990100feffb1"
+      "cc0c0000000000000000ffff0000a69b44bc8fc2f5bc8fc275bc8fc2753d10";
+  std::string bytes;
+  for (std::size_t i = 0; i < kHex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(std::string(kHex.substr(i, 2)), nullptr, 16));
+  return bytes;
+}
+
+TEST_F(WildTest, DracoCompressionIsRead) {
+  const std::string draco = DracoBox();
+  const std::string json = fmt::format(
+      R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1,"extensions":{{"KHR_draco_mesh_compression":
+{{"bufferView":0,"attributes":{{"POSITION":0}}}}}}}}]}}],"buffers":[{{"byteLength":{}}}],"bufferViews":[{{"buffer":0,"byteLength":{}}}],
+"accessors":[{{"componentType":5126,"count":8,"type":"VEC3"}},{{"componentType":5123,"count":36,"type":"SCALAR"}}]{}}})",
+      draco.size(), draco.size(), Required("KHR_draco_mesh_compression"));
+  Write("objects/draco.glb", Container(json, draco));
+  const ObjectModel object = Load("<mesh filename=\"draco.glb\"/>");
+  EXPECT_EQ(object.triangles.size(), 12u);
+  EXPECT_NEAR(ObjectSolid(object).volume, 0.024 * 0.06 * 0.03, 1e-8);
 }
 
 }  // namespace
