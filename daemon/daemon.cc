@@ -124,6 +124,8 @@ void Daemon::Reload(const ConfigSource& source) {
 
 void Daemon::Stop() { server_->Stop(); }
 
+void Daemon::StopAtEndOf(int fd) { server_->StopAtEndOf(fd); }
+
 const std::string& Daemon::socket_path() const { return listener_->path(); }
 
 SessionConfig MakeSessionConfig(const DaemonConfig& config) {

@@ -32,6 +32,8 @@ class Daemon {
   void Run(bool signals, const ConfigSource& source = {});
   /// Any thread.
   void Stop();
+  /// Stops as well when `fd` has no more to read. Before Run().
+  void StopAtEndOf(int fd);
   const std::string& socket_path() const;
 
  private:

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -87,7 +88,8 @@ struct Flags {
   std::vector<std::string> text;  ///< by index into ConfigKeys()
   double bench_s = 0;
   bool paused = false, check = false, print_default = false, print_config = false,
-       print_protocol = false, print_manual = false, print_protocol_manual = false, version = false;
+       print_protocol = false, print_manual = false, print_protocol_manual = false, version = false,
+       until_eof = false;
 };
 
 constexpr const char* kDescription =
@@ -128,6 +130,8 @@ void AddFlags(CLI::App& app, Flags& f) {
   app.add_flag("--print-protocol-manual", f.print_protocol_manual,
                "print the source of regrasp-protocol(7), then exit");
   app.add_flag("--print-manual", f.print_manual, "print the source of regraspd(8), then exit");
+  app.add_flag("--until-eof", f.until_eof,
+               "stop when standard input ends: with the program that holds its other end");
   app.add_option("--bench", f.bench_s,
                  "measure ticks for so long in each state, print JSON, then exit")
       ->type_name("S");
@@ -173,7 +177,7 @@ void RaiseDescriptorLimit(int clients) {
                  clients);
 }
 
-int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
+int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source, bool until_eof) {
   StartLog(config);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);            // a file that may not grow is an error, not the end
@@ -184,6 +188,7 @@ int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source) {
   spdlog::info("regraspd {} listens on {}, configuration {}", Version(),
                ShownText(daemon.socket_path()),
                config.file.empty() ? "built in" : ShownText(config.file));
+  if (until_eof) daemon.StopAtEndOf(STDIN_FILENO);
   daemon.Run(true, source);
   spdlog::info("stopped");
   return static_cast<int>(ExitCode::kOk);
@@ -217,7 +222,7 @@ int Main(int argc, char** argv) {
     const DaemonConfig config = source();
     if (flags.print_config) return Print(ConfigJson(config) + "\n");
     if (flags.bench_s > 0) return Print(Benchmark(config, flags.bench_s) + "\n");
-    if (!flags.check) return Serve(config, source);
+    if (!flags.check) return Serve(config, source, flags.until_eof);
     for (const std::string& warning : CheckModels(config))
       fmt::print(stderr, "regraspd: warning: {}\n", warning);
     return Print("configuration ok\n");

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -78,12 +79,13 @@ std::vector<char*> Environment(Surroundings surroundings) {
   return variables;
 }
 
-/// The child's side: own session, output to the log, then the daemon. Never returns. Only
+/// The child's side: own session, output to the log, then the daemon. `input_fd`: its standard
+/// input, or -1 for none. Never returns. Only
 /// async-signal-safe calls: the program may have threads.
-[[noreturn]] void Become(char* const* argv, char* const* variables, int log_fd) {
+[[noreturn]] void Become(char* const* argv, char* const* variables, int input_fd, int log_fd) {
   ::setsid();
-  const int null_fd = ::open("/dev/null", O_RDONLY);
-  ::dup2(null_fd, STDIN_FILENO);
+  if (input_fd < 0) input_fd = ::open("/dev/null", O_RDONLY);
+  ::dup2(input_fd, STDIN_FILENO);
   ::dup2(log_fd, STDOUT_FILENO);
   ::dup2(log_fd, STDERR_FILENO);
   // Before they are let through: a handler of this program would swallow what waits to end it.
@@ -157,15 +159,24 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
                    "regrasp -s PATH up");
   }
   std::vector<std::string> words = {daemon, "--socket", socket};
-  if (surroundings == Surroundings::kNothing) words.insert(words.end(), {"--config", "/dev/null"});
+  std::array<int, 2> input = {-1, -1};
+  if (surroundings == Surroundings::kNothing) {
+    words.insert(words.end(), {"--config", "/dev/null", "--until-eof"});
+    if (::pipe2(input.data(), O_CLOEXEC) != 0) {
+      ::close(log_fd);
+      throw CliError(kIo, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    }
+  }
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   const std::vector<char*> variables = Environment(surroundings);
   started.pid = ::fork();
-  if (started.pid == 0) Become(argv.data(), variables.data(), log_fd);
+  if (started.pid == 0) Become(argv.data(), variables.data(), input[0], log_fd);
   ::close(log_fd);
+  if (input[0] >= 0) ::close(input[0]);
+  started.input = input[1];
   if (started.pid < 0)
     throw CliError(kIo, fmt::format("cannot start {}: {}", daemon, std::strerror(errno)));
 
@@ -197,6 +208,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
     }
   } catch (const CliError& failure) {
     if (failure.code == kTimeout || failure.code == kInterrupted) End(started.pid);
+    if (started.input >= 0) ::close(started.input);
     throw;
   }
   return started;

@@ -13,12 +13,14 @@ std::string FindDaemon();
 /// What a daemon may learn from where it is started.
 enum class Surroundings {
   kOfUser,   ///< configuration file and environment, as the user has them
-  kNothing,  ///< neither: no configuration file, no $REGRASP_..., no service manager
+  kNothing,  ///< neither: no configuration file, no $REGRASP_..., no service manager; it ends with
+             ///< this program
 };
 
 struct StartedDaemon {
   int pid = 0;
   std::string socket, log;
+  int input = -1;  ///< the other end of its standard input, of a daemon that ends with this program
 };
 
 /// What `regraspd words... option` prints before it ends. Throws its error as CliError, with `next`

@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -33,6 +34,7 @@ PrivateDaemon::~PrivateDaemon() {
     ::kill(started_.pid, SIGKILL);  // it has nothing to lose
   }
   ::waitpid(started_.pid, nullptr, 0);
+  ::close(started_.input);
   std::error_code ignored;
   std::filesystem::remove_all(directory_, ignored);
 }

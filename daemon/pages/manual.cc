@@ -165,6 +165,10 @@ constexpr const char* kRest = R"(*--check-config*
 	Print the protocol page in Markdown, or the source of *regrasp-protocol*(7) or of this page, then
 	exit.
 
+*--until-eof*
+	Stop when standard input ends. A program that starts a daemon for itself keeps the other end of a
+	pipe, and the daemon goes with it, however it ends.
+
 *--version*
 	Print the version, then exit.
 

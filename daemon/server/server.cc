@@ -49,6 +49,7 @@ void Server::Run(bool signals, std::function<void()> reload) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) signals_.add(signal);
   watching_.signals = !signals;
   watching_.watchdog = !manager_.watchdog();
+  watching_.input = !input_.is_open();
   manager_.Tell("READY=1\nSTATUS=" + StatusLine());
   // A handler that throws past its guard has lost what it was about; the others go on.
   while (!io_.stopped()) {
@@ -69,6 +70,7 @@ void Server::Run(bool signals, std::function<void()> reload) {
 
 void Server::Watch() {
   if (!watching_.signals) WatchSignals();
+  if (!watching_.input) WatchInput();
   if (!watching_.control) WatchControl();
   if (!watching_.health) WatchHealth();
   if (!watching_.clients && !stopping_) Accept();
@@ -77,6 +79,22 @@ void Server::Watch() {
 
 void Server::Stop() {
   asio::post(io_, [this] { Shutdown(); });
+}
+
+void Server::StopAtEndOf(int fd) {
+  const int own = ::dup(fd);
+  if (own < 0) throw std::system_error(errno, std::generic_category(), "dup");
+  input_.assign(own);
+}
+
+void Server::WatchInput() {
+  input_.async_read_some(asio::buffer(passed_over_), [this](std::error_code error, std::size_t) {
+    if (!error) return WatchInput();
+    if (error == asio::error::operation_aborted) return;
+    spdlog::info("standard input has ended: stopping");
+    Shutdown();
+  });
+  watching_.input = true;
 }
 
 void Server::WatchSignals() {

@@ -3,6 +3,7 @@
 /// The I/O thread: accepts clients, owns the connections, timers and the worker, and wakes up when
 /// the control loop has something to tell.
 
+#include <array>
 #include <asio/io_context.hpp>
 #include <asio/local/stream_protocol.hpp>
 #include <asio/posix/stream_descriptor.hpp>
@@ -33,6 +34,9 @@ class Server final : public ConnectionOwner, public Host {
   void Run(bool signals, std::function<void()> reload = {});
   /// Any thread: closes the connections once they are flushed and ends Run().
   void Stop();
+  /// Before Run(): it also ends when `fd` has no more to read. What comes from there is passed
+  /// over.
+  void StopAtEndOf(int fd);
 
   /// From `reload`: a request of our own, as a client would make it. Returns why it was refused, or
   /// "".
@@ -62,6 +66,7 @@ class Server final : public ConnectionOwner, public Host {
   void TakeFromControl();
   void WatchHealth();
   void WatchSignals();
+  void WatchInput();
   void FeedWatchdog();
   std::string StatusLine() const;
   void Finish();
@@ -74,13 +79,15 @@ class Server final : public ConnectionOwner, public Host {
   ListenSocket* listener_;
   asio::io_context io_{1};
   asio::local::stream_protocol::acceptor acceptor_{io_};
-  asio::posix::stream_descriptor control_output_{io_};
+  asio::posix::stream_descriptor control_output_{io_}, input_{io_};
+  std::array<char, 256> passed_over_{};
   asio::steady_timer accept_retry_{io_}, health_{io_}, last_moment_{io_}, watchdog_{io_};
   asio::signal_set signals_{io_};
   std::function<void()> reload_;
   /// What is being waited for; each is begun again by its handler, or by Watch().
   struct {
-    bool clients = false, control = false, health = false, signals = false, watchdog = false;
+    bool clients = false, control = false, health = false, signals = false, watchdog = false,
+         input = false;
   } watching_;
   std::map<Connection*, std::shared_ptr<Connection>> connections_;
   std::map<std::uint64_t, asio::steady_timer> timers_;

@@ -3,7 +3,9 @@
 import ctypes
 import json
 import os
+import pathlib
 import re
+import select
 import socket
 import shutil
 import signal
@@ -14,6 +16,44 @@ import unittest
 from harness import Case, HANG_S, REGRASP, REGRASPD, SOURCE, environment
 
 MODELS = ["--models-dir", str(SOURCE / "models")]
+
+
+def children(pid):
+    """The processes whose parent is `pid`."""
+    found = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parent = stat.read_text(errors="replace").rsplit(")", 1)[1].split()[1]
+        except OSError:
+            continue  # it has just ended
+        if int(parent) == pid:
+            found.append(int(stat.parent.name))
+    return found
+
+
+class UntilEof(Case):
+    def test_it_ends_with_its_input(self):
+        words = [REGRASPD, "--socket", self.socket, "--output-dir", self.dir / "out", "--until-eof", *MODELS]
+        self.socket.parent.mkdir(mode=0o700)
+        with subprocess.Popen(words, env=environment(), stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as daemon:
+            while "listens on" not in (line := daemon.stderr.readline()):
+                self.assertNotEqual(line, "")
+            daemon.stdin.write("what is written there is passed over\n")
+            daemon.stdin.flush()
+            self.expect(0, "status")
+            daemon.stdin.close()
+            self.assertEqual(daemon.wait(HANG_S), 0)
+            self.assertIn("standard input has ended", daemon.stderr.read())
+
+    def test_a_daemon_of_the_command_line_ends_where_that_is_killed(self):
+        words = [REGRASP, "experiment", "rotation", "-n", "9", "-o", self.dir / "out"]
+        with subprocess.Popen(words, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as program:
+            while not (daemons := children(program.pid)):
+                self.assertIsNone(program.poll())
+            watched = os.pidfd_open(daemons[0])
+            program.kill()
+        self.addCleanup(os.close, watched)
+        self.assertEqual(select.select([watched], [], [], HANG_S)[0], [watched])
 
 
 class Config(Case):
