@@ -8,6 +8,7 @@ import json
 import os
 import socket
 import sys
+import tomllib
 
 
 class Regrasp:
@@ -34,9 +35,20 @@ class Regrasp:
         return self.call("job.wait", id=self.call(method, **params)["job"])
 
 
+def configured_socket():
+    """What the configuration file says, if it says anything."""
+    home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
+    usual = [folder + "/regrasp/regraspd.toml" for folder in (home, "/etc")]
+    file = os.environ.get("REGRASP_CONFIG") or next(filter(os.path.exists, usual), None)
+    if not file:
+        return None
+    with open(file, "rb") as text:
+        return tomllib.load(text).get("socket")
+
+
 def find_socket():
     """The path that was named, or the first that is there of the places where `regrasp up` puts it."""
-    named = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("REGRASP_SOCKET")
+    named = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("REGRASP_SOCKET") or configured_socket()
     if named:
         return named
     folders = [os.environ.get("XDG_RUNTIME_DIR", "/run") + "/regrasp", "/run/regrasp", f"/tmp/regrasp-{os.getuid()}"]

@@ -42,6 +42,11 @@ class Examples(DaemonCase):
         self.assertGreaterEqual(len(explored), 4)  # the thumb may be refused: the rest holds too little without it
         self.assertEqual(sum("phi" in line for line in lines), sum(job["state"] == "done" for job in explored))
 
+    def test_python_reads_the_configuration_file(self):
+        file = self.dir / "regraspd.toml"
+        file.write_text(f'socket = "{self.socket}"\n')
+        self.assertIn("ring", self.run_example(sys.executable, EXAMPLES / "explore.py", REGRASP_CONFIG=str(file)))
+
     def test_cplusplus(self):
         watch = self.dir / "watch"
         subprocess.run(["g++", "-std=c++20", "-Wall", "-Wextra", "-Werror", EXAMPLES / "watch.cc", "-o", watch], check=True, timeout=HANG_S)

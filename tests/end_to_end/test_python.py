@@ -2,16 +2,24 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
+import threading
+import time
 import unittest
 
-from harness import BIN, HANG_S, SOURCE, Case, DaemonCase, environment
+from harness import BIN, HANG_S, SOURCE, Case, DaemonCase, FakeDaemon, environment
 
 os.environ["REGRASP_BIN_DIR"] = str(BIN)
 sys.path.insert(0, str(SOURCE / "cli" / "python"))
 import regrasp  # noqa: E402  (found through the line above)
 from regrasp import runs  # noqa: E402
+
+
+def run_python(source, **env):
+    env = environment(PYTHONPATH=str(SOURCE / "cli" / "python"), REGRASP_BIN_DIR=str(BIN), **env)
+    return subprocess.run([sys.executable, "-c", source], env=env, capture_output=True, text=True, timeout=HANG_S, check=False)
 
 
 class Methods(DaemonCase):
@@ -32,6 +40,24 @@ class Methods(DaemonCase):
                 hand.explore("ring")
         self.assertEqual(caught.exception.code, -32002)
         self.assertIn("grasp", caught.exception.hint)
+
+    def test_an_argument_may_be_called_method(self):
+        with regrasp.connect(self.socket) as hand:
+            self.assertEqual([m["name"] for m in hand.describe(method="status")["methods"]], ["status"])
+            self.assertEqual(hand.call("describe", method="status"), hand.describe("status"))
+
+    def test_the_configuration_file_names_the_socket(self):
+        file = self.dir / "config" / "regrasp" / "regraspd.toml"
+        file.parent.mkdir(parents=True)
+        file.write_text(f'socket = "{self.socket}"\n')
+        ask = "import regrasp; print(regrasp.connect().path)"
+        for env in ({"XDG_CONFIG_HOME": str(self.dir / "config")}, {"REGRASP_CONFIG": str(file)}):
+            with self.subTest(*env):
+                self.assertEqual(run_python(ask, **env).stdout.strip(), str(self.socket))
+        flagged = run_python(ask, REGRASP_CONFIG=str(file), REGRASP_SOCKET="/nowhere/regrasp.sock")
+        self.assertIn("FileNotFoundError", flagged.stderr)
+        file.write_text("socket = \n")
+        self.assertIn(f"ValueError: {file}: ", run_python(ask, REGRASP_CONFIG=str(file)).stderr)
 
     def test_streams_are_iterators(self):
         with regrasp.connect(self.socket) as hand:
@@ -80,6 +106,73 @@ class Private(Case):
         ran = subprocess.run([sys.executable, "-c", source], cwd=self.dir, env=env, capture_output=True, text=True, timeout=HANG_S, check=False)
         self.assertEqual(ran.returncode, 0, ran.stderr)
         self.assertIn("phi", ran.stdout)
+
+
+class Interrupted(Case):
+    def test_later_answers_are_of_later_calls(self):
+        answering = threading.Event()
+        daemon = FakeDaemon(self.socket, {"job.wait": lambda _: answering.wait(HANG_S) and {"state": "done"},
+                                          "status": lambda _: {"state": "idle"}, "wrong": lambda _: b"no answer\n"})
+        self.addCleanup(daemon.close)
+        with regrasp.connect(self.socket) as hand:
+            signal.signal(signal.SIGALRM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
+            with self.assertRaises(KeyboardInterrupt):
+                regrasp.Job(hand, 1).wait()
+            answering.set()
+            self.assertEqual(hand.status(), {"state": "idle"})
+            with self.assertRaises(ValueError):
+                hand.call("wrong")
+
+    def test_an_interrupt_at_the_terminal_does_not_reach_a_private_daemon(self):
+        with regrasp.start(seed=1) as hand:
+            self.assertNotEqual(os.getsid(hand._daemon._process.pid), os.getsid(0))
+
+
+class LeftOpen(Case):
+    """A hand that nobody closes: its daemon ends with the interpreter, however that ends."""
+
+    START = "import os, signal, regrasp; hand = regrasp.start(seed=1); print(hand._daemon._process.pid, hand.path, flush=True); "
+
+    def daemon_of(self, more):
+        number, path = run_python(self.START + more).stdout.split()
+        return number, path
+
+    def assert_ends(self, number):
+        # Killed interpreters do not wait for it.
+        deadline = time.monotonic() + HANG_S
+        while time.monotonic() < deadline:
+            try:
+                with open(f"/proc/{number}/stat", encoding="utf-8") as stat:
+                    if stat.read().rsplit(")", 1)[1].split()[0] == "Z":
+                        return
+            except OSError:
+                return
+            time.sleep(0.01)
+        self.fail(f"regraspd {number} is still there")
+
+    def test_at_the_end_of_the_script(self):
+        for more in ("pass", "raise RuntimeError", "os.fork() or os._exit(0); hand.status()"):
+            with self.subTest(more):
+                number, path = self.daemon_of(more)
+                self.assert_ends(number)
+                self.assertFalse(os.path.exists(os.path.dirname(path)))
+
+    def test_where_it_is_killed(self):
+        for more in ("os.kill(os.getpid(), signal.SIGKILL)", "os.kill(os.getpid(), signal.SIGTERM)"):
+            with self.subTest(more):
+                self.assert_ends(self.daemon_of(more)[0])
+
+    def test_a_fork_that_ends_leaves_it(self):
+        number, _ = self.daemon_of("child = os.fork(); child or exit(); os.waitpid(child, 0); print(hand.status()['state'][:0], end='')")
+        self.assert_ends(number)
+
+    def test_where_nobody_has_it_any_more(self):
+        hand = regrasp.start(seed=1)
+        process = hand._daemon._process
+        with self.assertWarns(ResourceWarning):  # of its socket
+            del hand
+        self.assertIsNotNone(process.returncode)
 
 
 class RunFiles(Case):

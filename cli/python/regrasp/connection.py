@@ -1,6 +1,7 @@
-"""One connection to the daemon: JSON-RPC 2.0, one object per line, answers in the order of the requests."""
+"""One connection to the daemon: JSON-RPC 2.0, one object per line, answers with the number of the request."""
 
 import json
+import select
 import socket
 
 
@@ -55,11 +56,12 @@ class Connection:
         except OSError:
             self._socket.close()
             raise
-        self._lines = self._socket.makefile("r", encoding="utf-8", newline="\n")
+        self._waiting = select.poll()
+        self._waiting.register(self._socket, select.POLLIN)
+        self._received = b""  # what follows the last line that was read
         self._last_id = 0
 
     def close(self):
-        self._lines.close()
         self._socket.close()
 
     def __enter__(self):
@@ -69,18 +71,24 @@ class Connection:
         self.close()
 
     def _read(self):
-        line = self._lines.readline()
-        if not line.endswith("\n"):
-            raise ConnectionError(f"{self.path}: the daemon closed the connection")
+        # An interrupt comes while it waits, when nothing has been taken from the socket yet.
+        while b"\n" not in self._received:
+            self._waiting.poll()
+            chunk = self._socket.recv(1 << 20)
+            if not chunk:
+                raise ConnectionError(f"{self.path}: the daemon closed the connection")
+            self._received += chunk
+        line, _, self._received = self._received.partition(b"\n")
         return json.loads(line)
 
-    def call(self, method, **params):
+    def call(self, method, /, **params):
         """The result of one request. Raises Error when the daemon refuses it; nothing has changed then."""
         self._last_id += 1
         request = {"jsonrpc": "2.0", "id": self._last_id, "method": method, "params": params}
         self._socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
-        while "id" not in (answer := self._read()):
-            pass  # a notification of a subscription made with call()
+        # Passed over: notifications of a subscription made with call(), answers to calls that were interrupted.
+        while "id" not in (answer := self._read()) or answer["id"] not in (None, self._last_id):
+            pass
         if "error" in answer:
             raise Error(method, answer["error"])
         return answer["result"]

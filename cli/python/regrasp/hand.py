@@ -6,6 +6,8 @@ import shutil
 import subprocess
 import tempfile
 import time
+import tomllib
+import weakref
 
 from .connection import Connection
 from .methods import Methods
@@ -14,11 +16,14 @@ START_LIMIT_S = 60  # of wall clock, for a daemon to answer
 
 
 class Hand(Methods, Connection):
-    """A connection with every method of the daemon. `daemon`: the private daemon that ends with it, or None."""
+    """A connection with every method of the daemon. `daemon`: the private daemon that ends with it, or None: when it is
+    closed, when nobody has it any more, at the latest with the interpreter."""
 
     def __init__(self, path, daemon=None):
         Connection.__init__(self, path)
         self._daemon = daemon
+        if daemon is not None:
+            weakref.finalize(self, daemon.stop)
 
     @property
     def output_dir(self):
@@ -29,12 +34,29 @@ class Hand(Methods, Connection):
         Connection.close(self)
         if self._daemon is not None:
             self._daemon.stop()
-            self._daemon = None
+
+
+def configured_socket():
+    """`socket` of the configuration file, or None: of $REGRASP_CONFIG, else of the first regrasp/regraspd.toml in
+    $XDG_CONFIG_HOME (~/.config) and /etc. Raises OSError and ValueError where the file cannot be read."""
+    file = os.environ.get("REGRASP_CONFIG")
+    if not file:
+        home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
+        file = next(filter(os.path.exists, (folder + "/regrasp/regraspd.toml" for folder in (home, "/etc"))), None)
+    if not file:
+        return None
+    with open(file, "rb") as text:
+        try:
+            named = tomllib.load(text).get("socket")
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from None
+    return named if isinstance(named, str) else None
 
 
 def find_socket():
-    """Where `regrasp` looks: $REGRASP_SOCKET, then the first place of `regrasp up` where a socket is."""
-    if named := os.environ.get("REGRASP_SOCKET"):
+    """Where `regrasp` looks: $REGRASP_SOCKET, the configuration file, then the first place of `regrasp up` where a
+    socket is."""
+    if named := os.environ.get("REGRASP_SOCKET") or configured_socket():
         return named
     folders = [os.environ.get("XDG_RUNTIME_DIR", "/run") + "/regrasp", "/run/regrasp", f"/tmp/regrasp-{os.getuid()}"]
     paths = [folder + "/regrasp.sock" for folder in folders]
@@ -66,7 +88,7 @@ def start(seed=1, hand=None, object=None, noise=None, clock="lockstep", stepper=
     daemon writes is deleted with it. settings: parameters, with __ for the dot: gait__mode="exploring".
     The configuration and environment of the user change nothing. Raises RuntimeError with the daemon's own words when it
     does not start."""
-    words = ["--seed", str(seed), "--speed", "max", "--clock", clock, "--config", "/dev/null"]
+    words = ["--seed", str(seed), "--speed", "max", "--clock", clock, "--config", "/dev/null", "--until-eof"]
     for option, value in (("--hand", hand), ("--object", object), ("--noise", noise), ("--stepper", stepper)):
         if value is not None:
             words += [option, str(value)]
@@ -86,25 +108,33 @@ def start(seed=1, hand=None, object=None, noise=None, clock="lockstep", stepper=
 
 
 class _Daemon:
-    """regraspd in a directory of its own under the temporary directory, until `stop`."""
+    """regraspd in a directory of its own under the temporary directory, until `stop`. In a session of its own: Ctrl-C at
+    a terminal ends a call, not the daemon, which ends with the interpreter: that has the other end of its input."""
 
     def __init__(self, words, output_dir):
-        self._directory = tempfile.TemporaryDirectory(prefix="regrasp-python-")
-        private = pathlib.Path(self._directory.name)
+        program = find_daemon()
+        self._owner = os.getpid()
+        self._directory = tempfile.mkdtemp(prefix="regrasp-python-")
+        private = pathlib.Path(self._directory)
         self.socket = str(private / "regrasp.sock")
         output = pathlib.Path(output_dir) if output_dir else private / "output"
         environment = {k: v for k, v in os.environ.items() if not k.startswith("REGRASP_")}
         self._log = open(private / "log", "w+b")
         self._process = subprocess.Popen(
-            [find_daemon(), "--socket", self.socket, "--output-dir", str(output), *words], env=environment,
-            stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log)
+            [program, "--socket", self.socket, "--output-dir", str(output), *words], env=environment,
+            stdin=subprocess.PIPE, stdout=self._log, stderr=self._log, start_new_session=True)
+        try:
+            self._wait()
+        except BaseException:
+            self.stop()
+            raise
+
+    def _wait(self):
         deadline = time.monotonic() + START_LIMIT_S
         while not self._answers():
             if self._process.poll() is not None or time.monotonic() > deadline:
                 self._log.seek(0)
-                said = self._log.read().decode(errors="replace").strip()
-                self.stop()
-                raise RuntimeError(f"regraspd did not start: {said}")
+                raise RuntimeError(f"regraspd did not start: {self._log.read().decode(errors='replace').strip()}")
             time.sleep(0.01)
 
     def _answers(self):
@@ -115,7 +145,10 @@ class _Daemon:
             return False
 
     def stop(self):
+        if self._log.closed or os.getpid() != self._owner:  # a fork has the parent's daemon
+            return
         self._process.terminate()
         self._process.wait()
+        self._process.stdin.close()
         self._log.close()
-        self._directory.cleanup()
+        shutil.rmtree(self._directory, ignore_errors=True)
