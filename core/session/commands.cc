@@ -51,7 +51,8 @@ Verdict Check(CommandType type, SessionState state, bool job_running) {
     return {Kind::kBadState, "the simulation is faulted", "regrasp reset"};
   if (type == CommandType::kPush &&
       (state == SessionState::kDropped || state == SessionState::kIdle))
-    return {Kind::kBadState, "the hand does not hold the object", "regrasp grasp"};
+    return {Kind::kBadState, "the hand does not hold the object",
+            state == SessionState::kDropped ? "regrasp reset" : "regrasp grasp"};
   return {};
 }
 

@@ -43,7 +43,10 @@ void Service::CheckNotRestoring() const {
 
 void Service::CheckAllowed(CommandType type) const {
   CheckNotFaulted();
-  const Verdict verdict = Check(type, newest_.frame.state, jobs_.Unfinished() != nullptr);
+  // A hand that has released the object is idle again, but there is nothing to grasp.
+  const bool released = newest_.frame.state == SessionState::kIdle && !newest_.frame.stand_in;
+  const Verdict verdict = Check(type, released ? SessionState::kDropped : newest_.frame.state,
+                                jobs_.Unfinished() != nullptr);
   if (verdict.kind == Verdict::Kind::kAllowed) return;
   const bool busy = verdict.kind == Verdict::Kind::kBusy;
   std::string message = verdict.reason;

@@ -171,6 +171,27 @@ class Paused(DaemonCase):
         self.assertTrue(self.json("status")["paused"])
 
 
+class Released(DaemonCase):
+    def test_what_needs_the_object_is_refused_at_once(self):
+        self.expect(0, "grasp", "--wait")
+        self.expect(0, "release", "--wait")
+        jobs = self.json("job", "list")["jobs"]
+        for words in (["grasp"], ["explore", "ring"], ["push", "--force", "0,0,1"]):
+            with self.subTest(words):
+                self.assertEqual(self.refused(5, *words)[1], "  try: regrasp reset")
+        self.assertEqual(self.json("job", "list")["jobs"], jobs)
+        self.expect(0, "reset")
+        self.expect(0, "grasp", "--wait")
+
+    def test_a_push_on_a_dropped_object_hints_at_reset(self):
+        self.expect(0, "grasp", "--wait")
+        self.expect(0, "param", "set", "object.friction", "0.05")
+        self.regrasp("rotate", "--angle", "30", "--wait")
+        self.assertEqual(self.json("status")["state"], "dropped")
+        for words in (["push", "--force", "0,0,1"], ["explore", "ring"], ["grasp"]):
+            self.assertEqual(self.refused(5, *words)[1], "  try: regrasp reset")
+
+
 class Continuous(DaemonCase):
     ARGUMENTS = ["--speed", "max", "--seed", "1", "--clock", "continuous"]
 
