@@ -45,7 +45,7 @@ class Context {
   template <typename Human>
   void PrintRows(const Json& answer, const std::vector<Json>& rows, Human human) {
     if (!options_.quiet && out_.format() == Format::kCsv) {
-      for (const auto& row : rows) out_.AddCsv(row);
+      out_.AddCsv(rows);
     } else {
       Print(answer, human);
     }

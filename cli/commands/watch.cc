@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "cli/client/context.h"
 #include "cli/commands/jobs.h"
+#include "core/files/json_text.h"
 
 namespace regrasp::cli {
 namespace {
@@ -52,6 +54,43 @@ std::string SampleLine(Output& out, const std::string& topic, const Json& sample
   return text;
 }
 
+/// Where a null stands for a vector, and how many numbers that has.
+std::size_t SizeOfVector(const std::string& name) {
+  if (name.starts_with("q_")) return 4;
+  const bool vector = name.starts_with("p_") || name.find("_W") != std::string::npos;
+  return vector ? 3 : 0;
+}
+
+/// `value` with a cell for each number that it may have; what differs in its members from one time
+/// to another is a cell of JSON.
+Json Settled(const std::string& name, const Json& value) {
+  static constexpr std::string_view kDiffers[] = {
+      "contacts", "changed_parameters", "gait", "incident", "more", "warnings"};
+  if (value.is_null() && SizeOfVector(name) > 0) return std::vector<Json>(SizeOfVector(name));
+  if (value.is_structured() && std::ranges::find(kDiffers, name) != std::end(kDiffers))
+    return JsonText(value);
+  if (!value.is_object()) return value;
+  Json settled = Json::object();
+  for (const auto& [key, item] : value.items()) settled[key] = Settled(key, item);
+  return settled;
+}
+
+/// A sample as a row of a table that has the same columns always, whatever goes on.
+Json CsvRow(const std::string& topic, Json sample) {
+  static constexpr const char* kOfEveryJob[] = {"id",       "method",     "state",   "error",
+                                                "progress", "start_tick", "end_tick"};
+  if (topic == "status") {
+    Json job = Json::object(), more = At(sample, "job");
+    for (const char* key : kOfEveryJob) {
+      job[key] = At(more, key);
+      if (more.is_object()) more.erase(key);
+    }
+    job["more"] = more;
+    sample["job"] = job;
+  }
+  return Settled("", sample);
+}
+
 ExitCode Stream(Context& context, const std::string& topic, const Json& params,
                 std::int64_t count) {
   const Interruptible interruptible;
@@ -64,7 +103,8 @@ ExitCode Stream(Context& context, const std::string& topic, const Json& params,
       if (!sample)
         throw CliError(kTimeout, fmt::format("nothing on '{}' for {:g} s", topic, patience),
                        "regrasp status");
-      context.Print(*sample,
+      const bool csv = context.out().format() == Format::kCsv;
+      context.Print(csv ? CsvRow(topic, *sample) : *sample,
                     [&] { context.out().Line(SampleLine(context.out(), topic, *sample)); });
       context.out().Flush();
     }

@@ -42,17 +42,23 @@ void FlattenInto(const std::string& name, const Json& value,
 
 void Output::AddJson(const Json& value) { Line(JsonText(value)); }
 
-std::string CsvTable::Row(const Json& row) {
+void CsvTable::AddColumns(const Json& row) {
+  auto next = columns_.begin();
+  for (const auto& [name, cell] : Flatten(row)) {
+    const auto known = std::find(columns_.begin(), columns_.end(), name);
+    next = (known != columns_.end() ? known : columns_.insert(next, name)) + 1;
+  }
+}
+
+std::string CsvTable::Header() const {
+  std::string text;
+  for (const std::string& name : columns_) text += (text.empty() ? "" : ",") + CsvCell(name);
+  return text + '\n';
+}
+
+std::string CsvTable::Line(const Json& row) const {
   std::string text;
   const auto cells = Flatten(row);
-  if (columns_.empty()) {
-    for (const auto& [name, cell] : cells) {
-      columns_.push_back(name);
-      if (!text.empty()) text += ',';
-      text += CsvCell(name);
-    }
-    text += '\n';
-  }
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     if (i > 0) text += ',';
     const auto cell = std::find_if(cells.begin(), cells.end(),
@@ -60,6 +66,20 @@ std::string CsvTable::Row(const Json& row) {
     if (cell != cells.end()) text += CsvCell(cell->second);
   }
   return text + '\n';
+}
+
+std::string CsvTable::Row(const Json& row) {
+  if (!columns_.empty()) return Line(row);
+  AddColumns(row);
+  return Header() + Line(row);
+}
+
+std::string CsvTable::Rows(const std::vector<Json>& rows) {
+  if (rows.empty()) return "";
+  for (const Json& row : rows) AddColumns(row);
+  std::string text = Header();
+  for (const Json& row : rows) text += Line(row);
+  return text;
 }
 
 void Output::Flush() {

@@ -20,8 +20,15 @@ class CsvTable {
   /// The row's line; before the first one the header line with the columns that this row has. Later
   /// rows have the same columns.
   std::string Row(const Json& row);
+  /// Their lines; the header has every column that one of them has.
+  std::string Rows(const std::vector<Json>& rows);
 
  private:
+  /// Adds the columns of a row that are not there yet, each after the one it follows in the row.
+  void AddColumns(const Json& row);
+  std::string Header() const;
+  std::string Line(const Json& row) const;
+
   std::vector<std::string> columns_;
 };
 
@@ -42,6 +49,8 @@ class Output {
   void AddJson(const Json& value);
   /// Adds a row of CSV, its header before the first one.
   void AddCsv(const Json& row) { Add(csv_.Row(row)); }
+  /// Adds a whole list.
+  void AddCsv(const std::vector<Json>& rows) { Add(csv_.Rows(rows)); }
   /// Writes everything to stdout. Throws CliError(kIo).
   void Flush();
 
