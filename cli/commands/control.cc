@@ -41,10 +41,11 @@ ExitCode Move(Context& context, const Invocation& invocation) {
 ExitCode Stop(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    const Json& job = At(answer, "job");
-    context.out().Line(job.is_null()
-                           ? "nothing to stop"
-                           : fmt::format("job {} stopped; the hand keeps holding", Plain(job)));
+    const Json &job = At(answer, "job"), &step = At(answer, "step");
+    if (!job.is_null())
+      context.out().Line(fmt::format("job {} stopped; the hand keeps holding", Plain(job)));
+    if (!step.is_null()) context.out().Line(fmt::format("job {} stopped: step", Plain(step)));
+    if (job.is_null() && step.is_null()) context.out().Line("nothing to stop");
   });
   return kOk;
 }

@@ -166,7 +166,12 @@ inline constexpr std::array kSimulationRows = {
                "preset and every level"},
     MethodSpec{"noise.set", "noise set", "change noise levels", kNoiseSet, false,
                "preset and every level"},
-    MethodSpec{"pause", "pause", "stop the clock of the simulation", {}, false, "paused, tick"},
+    MethodSpec{"pause",
+               "pause",
+               "stop the clock of the simulation; a step that runs ends",
+               {},
+               false,
+               "paused, tick"},
     MethodSpec{"push", "push", "push the object: a disturbance", kPush, false,
                "force_n, duration_s"},
     MethodSpec{"reset", "reset", "start a new run; parameters and noise levels stay", kReset, false,
@@ -178,10 +183,10 @@ inline constexpr std::array kSimulationRows = {
                kStep, true, "job"},
     MethodSpec{"stop",
                "stop",
-               "end the current job and keep holding",
+               "end the current job, or step, and keep holding",
                {},
                false,
-               "job (the one that ends), or null"},
+               "job (the one that ends), or null; step (the job of the step that ends), or null"},
 };
 
 }  // namespace regrasp::rows

@@ -117,6 +117,7 @@ void ControlLoop::TakeRequests() {
         Reset(taken.request);
         break;
       case ControlRequest::Kind::kPause:
+        if (steps_left_ > 0) FinishStep(JobState::kCancelled, "paused");
         paused_ = true;
         publish_due_ = true;
         break;
@@ -140,7 +141,9 @@ void ControlLoop::TakeRequests() {
       case ControlRequest::Kind::kCancelStep:
         if (step_.id != taken.request.job) break;
         if (replay_) EndRestore(JobState::kCancelled, "");
-        if (steps_left_ > 0) FinishStep(JobState::kCancelled, "");
+        if (steps_left_ == 0) break;
+        ApplyWaiting();  // as its next tick would have
+        FinishStep(JobState::kCancelled, "");
         break;
       case ControlRequest::Kind::kMark:
         ApplyWaiting();  // what was accepted before belongs to it

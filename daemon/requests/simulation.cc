@@ -28,8 +28,12 @@ Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
 Outcome Stop(Service& service, const Params&, Client&) {
   service.CheckAllowed(CommandType::kStop);
   const JobRecord* job = service.jobs().Unfinished();
-  const Json id = job ? Json(job->id) : Json();
-  return {.result = {{"job", id}}, .barrier = service.PostCommand(Of(CommandType::kStop))};
+  const JobRecord* step = service.jobs().UnfinishedStep();
+  Json result = {{"job", job ? Json(job->id) : Json()}, {"step", step ? Json(step->id) : Json()}};
+  std::uint64_t barrier = 0;
+  if (job || !step) barrier = service.PostCommand(Of(CommandType::kStop));
+  if (step) barrier = service.Post({.kind = ControlRequest::Kind::kCancelStep, .job = step->id});
+  return {.result = std::move(result), .barrier = barrier};
 }
 
 Outcome Pause(Service& service, const Params&, Client&) {

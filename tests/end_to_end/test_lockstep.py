@@ -171,6 +171,51 @@ class Paused(DaemonCase):
         self.assertTrue(self.json("status")["paused"])
 
 
+class EndedSteps:
+    """While a step of an hour runs."""
+
+    def long_step(self):
+        step = self.json("step", "3600000")["job"]
+        while self.json("status")["tick"] == 0:
+            pass
+        return step
+
+    def assert_stands(self, step, error):
+        record = self.json("job", "show", step)
+        self.assertEqual((record["state"], record["error"] or ""), ("cancelled", error))
+        self.assertEqual(self.json("status")["tick"], record["end_tick"])
+
+    def test_pause_ends_it(self):
+        step = self.long_step()
+        said = self.json("pause")
+        self.assert_stands(step, "paused")
+        self.assertEqual(said["tick"], self.json("status")["tick"])
+
+    def test_stop_ends_it(self):
+        step = self.long_step()
+        self.assertEqual(self.expect(0, "stop").stdout, f"job {step} stopped: step\n")
+        self.assert_stands(step, "")
+        self.assertEqual(self.expect(0, "stop").stdout, "nothing to stop\n")
+
+
+class EndedStepsPaused(EndedSteps, DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1", "--paused", "--clock", "continuous"]
+
+    def test_stop_ends_the_job_that_it_moves_too(self):
+        self.expect(0, "grasp")
+        self.expect(0, "step", "--until-job-ends", "--wait")
+        job = self.json("rotate", "--continuous")["job"]
+        step = self.json("step", "3600000")["job"]
+        while self.json("job", "show", job)["state"] == "queued":
+            pass
+        self.assertEqual(self.json("stop"), {"job": job, "step": step})
+        self.assert_stands(step, "")
+
+
+class EndedStepsLockstep(EndedSteps, DaemonCase):
+    ARGUMENTS = ["--speed", "max", "--seed", "1"]
+
+
 class Released(DaemonCase):
     def test_what_needs_the_object_is_refused_at_once(self):
         self.expect(0, "grasp", "--wait")

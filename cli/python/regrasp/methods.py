@@ -201,7 +201,7 @@ class Methods:
         return self._ask("param.set", {"name": name, "value": value})
 
     def pause(self) -> dict:
-        """Stop the clock of the simulation.
+        """Stop the clock of the simulation; a step that runs ends.
         Returns paused, tick.
         """
         return self._ask("pause", {})
@@ -331,8 +331,8 @@ class Methods:
         return self._job("step", {"ticks": ticks, "until_job_ends": until_job_ends})
 
     def stop(self) -> dict:
-        """End the current job and keep holding.
-        Returns job (the one that ends), or null.
+        """End the current job, or step, and keep holding.
+        Returns job (the one that ends), or null; step (the job of the step that ends), or null.
         """
         return self._ask("stop", {})
 
