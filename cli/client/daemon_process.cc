@@ -32,11 +32,12 @@ bool Executable(const fs::path& path) {
   return ::access(path.c_str(), X_OK) == 0 && fs::is_regular_file(path);
 }
 
-/// The last lines of a text, at most `count`.
+/// The last lines of a text, at most `count`, without what it says is to be tried next.
 std::string Tail(const std::string& written, std::size_t count) {
   std::istringstream file(written);
   std::vector<std::string> lines;
-  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  for (std::string line; std::getline(file, line);)
+    if (!line.starts_with("try: ")) lines.push_back(line);
   std::string text;
   for (std::size_t i = lines.size() > count ? lines.size() - count : 0; i < lines.size(); ++i) {
     text += (text.empty() ? "" : " | ") + lines[i];
@@ -180,6 +181,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
   if (started.pid < 0)
     throw CliError(kIo, fmt::format("cannot start {}: {}", daemon, std::strerror(errno)));
 
+  const bool kept = surroundings == Surroundings::kOfUser;  // the log, after this daemon
   const auto deadline = Deadline(timeout_s);
   try {
     while (!Listening(socket)) {
@@ -190,7 +192,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
         const std::string written{std::istreambuf_iterator<char>(log), {}};
         const std::string cause = DaemonError(written), last = Tail(written, 3);
         const ExitCode exit_code = ExitCodeOf(code);
-        const std::string next = "regraspd --help, or cat " + started.log;
+        const std::string next = "regraspd --help" + (kept ? ", or cat " + started.log : "");
         if (cause.find('\n') != std::string::npos)
           throw CliError::List(exit_code, "regraspd: " + cause, next);
         throw CliError(exit_code,
@@ -202,7 +204,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
       }
       if (Clock::now() > deadline) {
         throw CliError(kTimeout, fmt::format("regraspd is not ready after {:g} s", timeout_s),
-                       "cat " + started.log);
+                       kept ? "cat " + started.log : "regrasp doctor");
       }
       WaitFor(-1, 0, Deadline(0.01));
     }

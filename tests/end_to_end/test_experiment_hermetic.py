@@ -54,6 +54,12 @@ class Hermetic(ExperimentCase):
 
     ONE = ["exploration", "--finger", "ring", "-n", "2", "--seed", "5", "--rays", "0", "--workers", "1"]
 
+    def test_a_daemon_that_cannot_start_hints_at_nothing_that_is_gone(self):
+        cause, hint = self.refused(6, "experiment", "rotation", "--object", "nope", "-n", "1", "-o", self.dir / "out")
+        self.assertIn('there is no model "nope"', cause)
+        self.assertNotIn("try:", cause)
+        self.assertEqual(hint, "  try: regraspd --help")
+
     def test_nothing_of_the_user_reaches_a_trial(self):
         self.run_experiment(*self.ONE, "-o", self.dir / "plain")
         (self.dir / "regrasp").mkdir()
