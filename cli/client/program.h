@@ -2,10 +2,12 @@
 
 /// Running another program, and reading what it prints.
 
-#include <spawn.h>
+#include <sys/types.h>
 
 #include <string>
 #include <vector>
+
+#include "cli/client/errors.h"
 
 namespace regrasp::cli {
 
@@ -18,13 +20,22 @@ struct Finished {
 /// installed in libexec. Throws CliError(kNotFound).
 std::string FindHelper(const std::string& name);
 
+/// Where a program writes instead of to standard output and standard error; -1: there. It gets no
+/// input then.
+struct Pipes {
+  int out = -1, err = -1;
+};
+
 /// Starts `words` (the first is looked for in $PATH), with no signal blocked whatever this program
-/// waits for: Ctrl-C ends both. Throws CliError(kNotFound) when it cannot be started.
-pid_t Start(const std::vector<std::string>& words,
-            const posix_spawn_file_actions_t* actions = nullptr);
+/// waits for: Ctrl-C ends both. It gets SIGTERM when this program ends, however that does. Throws
+/// CliError(kNotFound) when it cannot be started.
+pid_t Start(const std::vector<std::string>& words, const Pipes& pipes = {});
 /// Waits for its end; its exit code, or 128 + signal when it was killed. Throws
-/// CliError(kInterrupted) when that was SIGINT, the user's.
+/// CliError(kInterrupted) when it or this program was interrupted; it has ended then, too.
 int WaitForEnd(pid_t pid);
+/// Runs a helper to its end; its exit code. When it is interrupted, what it has begun beside
+/// `output` goes. Throws CliError: kInterrupted, kFailed when a signal ended it.
+ExitCode RunHelper(const std::vector<std::string>& words, const std::string& output = "");
 
 /// Runs `words` (the first is looked for in $PATH) with no input and waits for its end. Throws
 /// CliError(kNotFound) when it cannot be started, kInterrupted.

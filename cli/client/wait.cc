@@ -36,8 +36,12 @@ Interruptible::Interruptible() {
   sigprocmask(SIG_BLOCK, &block, &g_mask_before);  // delivered only inside ppoll
   struct sigaction action = {};
   action.sa_handler = OnSignal;
-  for (std::size_t i = 0; i < std::size(kSignals); ++i)
+  for (std::size_t i = 0; i < std::size(kSignals); ++i) {
     sigaction(kSignals[i], &action, &g_before[i]);
+    // As nohup has it.
+    if (kSignals[i] == SIGHUP && g_before[i].sa_handler == SIG_IGN)
+      sigaction(SIGHUP, &g_before[i], nullptr);
+  }
 }
 
 Interruptible::~Interruptible() {

@@ -15,7 +15,8 @@ using Clock = std::chrono::steady_clock;
 Clock::time_point Deadline(double seconds);
 
 /// While an Interruptible lives, SIGINT, SIGTERM, SIGHUP and SIGQUIT no longer kill the program:
-/// the wait in progress, or the next one, throws CliError(kInterrupted) instead.
+/// the wait in progress, or the next one, throws CliError(kInterrupted) instead. An
+/// ignored SIGHUP stays so.
 class Interruptible {
  public:
   Interruptible();

@@ -21,11 +21,7 @@ ExitCode Show(Context& context, const Invocation& invocation) {
   }
   if (context.out().format() == Format::kJson) arguments.push_back("--json");
   if (context.options().quiet) arguments.push_back("--quiet");
-  const int code = WaitForEnd(Start(arguments));
-  if (code > 128)
-    throw CliError(kFailed, fmt::format("regrasp-object ended by signal {}", code - 128),
-                   "regrasp doctor");
-  return static_cast<ExitCode>(code);
+  return RunHelper(arguments, invocation.Text("output"));
 }
 
 }  // namespace

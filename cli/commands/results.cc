@@ -82,7 +82,7 @@ ExitCode PlotRuns(Context& context, const Invocation& invocation) {
   words.insert(words.end(), {"--output", out});
   if (context.out().format() == Format::kJson) words.push_back("--json");
   if (context.options().quiet) words.push_back("--quiet");
-  const ExitCode code = static_cast<ExitCode>(WaitForEnd(Start(words)));
+  const ExitCode code = RunHelper(words, out);
   if (code == kOk && invocation.Has("show")) context.out().Add(DrawPicture(context, out));
   return code;
 }

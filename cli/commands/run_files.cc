@@ -69,14 +69,9 @@ ExitCode Run(Context& context, const Invocation& invocation,
     arguments.push_back(invocation.Text(arg.key, "yes"));
   }
   if (context.out().format() == Format::kJson) arguments.push_back("--json");
+  const std::string output = invocation.Text("output", defaults.empty() ? "" : defaults.back());
   if (context.options().quiet) arguments.push_back("--quiet");
-  const int code = WaitForEnd(Start(arguments));
-  if (code > 128)
-    throw CliError(kFailed,
-                   fmt::format("{} ended by signal {}", fs::path(arguments[0]).filename().string(),
-                               code - 128),
-                   "try again");
-  return static_cast<ExitCode>(code);
+  return RunHelper(arguments, output);
 }
 
 /// The command's options in the units that the helper takes, checked.

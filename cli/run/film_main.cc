@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -112,7 +111,6 @@ int main(int argc, char** argv) {
   ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
   ::mallopt(M_ARENA_MAX, 1);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // when regrasp is killed, so is this
   for (const int number : {SIGINT, SIGTERM, SIGHUP})
     std::signal(number, [](int seen) { signal_seen = seen; });
   return RunVerb(argc, argv, {{"plot", PlotCommand}, {"video", VideoCommand}});

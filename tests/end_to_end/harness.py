@@ -44,6 +44,19 @@ def wait_until_it_minds(process, number):
             raise AssertionError(f"ended with {process.returncode} before it could be interrupted")
 
 
+def children(pid):
+    """The processes whose parent is `pid`."""
+    found = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parent = stat.read_text(errors="replace").rsplit(")", 1)[1].split()[1]
+        except OSError:
+            continue  # it has just ended
+        if int(parent) == pid:
+            found.append(int(stat.parent.name))
+    return found
+
+
 class Case(unittest.TestCase):
     """A test with a directory of its own (`self.dir`) and a socket path in it (`self.socket`)."""
 

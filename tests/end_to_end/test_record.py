@@ -5,6 +5,7 @@ import csv
 import json
 import os
 import pathlib
+import select
 import shutil
 import signal
 import struct
@@ -12,7 +13,7 @@ import subprocess
 import time
 import unittest
 
-from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, environment
+from harness import Case, DaemonCase, HANG_S, REGRASP, SOURCE, children, environment
 from read_exports import read_gif, read_npz
 
 
@@ -189,6 +190,29 @@ class Runs(DaemonCase):
             deadline -= 1
             time.sleep(0.02)
         self.assertEqual(set(self.dir.iterdir()), before)
+
+    def test_interrupted_alone_it_ends_its_program_and_says_so(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        before = set(self.dir.iterdir())
+        for words in (["replay", path, "--speed", "0.01"], ["export", path, "--format", "csv", "--rate", "1000", "-o", self.dir / "csv"],
+                      ["video", path, "-o", self.dir / "run.mp4", "--speed", "0.02"]):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+                with self.subTest(words=words, number=number):
+                    with subprocess.Popen(list(map(str, [REGRASP, *words])), env=environment(), stdout=subprocess.DEVNULL,
+                                          stderr=subprocess.PIPE, text=True) as process:
+                        while not (programs := children(process.pid)):
+                            self.assertIsNone(process.poll())
+                        ended = os.pidfd_open(programs[0])
+                        self.addCleanup(os.close, ended)
+                        process.send_signal(number)
+                        self.assertEqual(select.select([ended], [], [], HANG_S)[0], [ended])
+                        said = process.communicate(timeout=HANG_S)[1]
+                    if number != signal.SIGKILL:
+                        self.assertEqual((process.returncode, said.splitlines()[-1]), (130, "regrasp: interrupted"))
+                        self.assertEqual(set(self.dir.iterdir()), before)
+                    for left in self.dir.glob(".draft*"):  # of a kill that nothing can answer
+                        shutil.rmtree(left) if left.is_dir() else left.unlink()
 
     def test_after_kill_9_everything_up_to_the_last_command_is_there(self):
         path = self.record()

@@ -3,7 +3,6 @@
 import ctypes
 import json
 import os
-import pathlib
 import re
 import select
 import socket
@@ -13,22 +12,9 @@ import subprocess
 import sys
 import unittest
 
-from harness import Case, HANG_S, REGRASP, REGRASPD, SOURCE, environment
+from harness import Case, HANG_S, REGRASP, REGRASPD, SOURCE, children, environment
 
 MODELS = ["--models-dir", str(SOURCE / "models")]
-
-
-def children(pid):
-    """The processes whose parent is `pid`."""
-    found = []
-    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
-        try:
-            parent = stat.read_text(errors="replace").rsplit(")", 1)[1].split()[1]
-        except OSError:
-            continue  # it has just ended
-        if int(parent) == pid:
-            found.append(int(stat.parent.name))
-    return found
 
 
 class UntilEof(Case):
