@@ -12,6 +12,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/files/lower_suffix.h"
 #include "core/protocol/plot_table.h"
 #include "snapshots/refused.h"
 
@@ -24,13 +25,6 @@ constexpr double kNarrowest = 1000;       // logical: curves and legends side by
 constexpr double kNarrowestColumn = 400;  // logical: curves with their legends below
 constexpr double kNarrowText = 0.8;       // of the size in a wide picture, but kSmallestText
 constexpr double kSubscript = 0.7, kSubscriptDrop = 0.2;  // of the text's size
-
-std::string LowerSuffix(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return suffix;
-}
 
 std::string CheckedSuffix(const std::string& path) {
   std::string suffix = LowerSuffix(path);

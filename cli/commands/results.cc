@@ -15,6 +15,7 @@
 #include "cli/grammar/units.h"
 #include "cli/print/terminal_graphics.h"
 #include "core/files/draft.h"
+#include "core/files/lower_suffix.h"
 #include "core/files/read_file.h"
 #include "core/protocol/plot_table.h"
 
@@ -49,10 +50,9 @@ std::string Bytes(const std::string& file) {
 /// In which format a picture named so is, lower case: ".png"; empty: nothing says, for a directory
 /// too. Refused where no picture ends so.
 std::string CheckedSuffix(const std::string& output, const std::string& name) {
-  std::string suffix = fs::path(output).extension().string();
+  const std::string suffix = LowerSuffix(output);
   std::error_code ignored;
   if (suffix.empty() || fs::is_directory(output, ignored)) return "";
-  std::ranges::transform(suffix, suffix.begin(), [](unsigned char c) { return std::tolower(c); });
   if (std::ranges::find(kPlotSuffixes, suffix) == kPlotSuffixes.end())
     throw CliError(
         kUsage, fmt::format("-o {}: a picture ends in {}", output, fmt::join(kPlotSuffixes, ", ")),

@@ -10,6 +10,7 @@
 #include "cli/client/context.h"
 #include "cli/client/program.h"
 #include "cli/grammar/units.h"
+#include "core/files/lower_suffix.h"
 
 namespace regrasp::cli {
 namespace {
@@ -68,8 +69,8 @@ ExitCode Run(Context& context, const Invocation& invocation,
     arguments.push_back("--" + arg.key);
     arguments.push_back(invocation.Text(arg.key, "yes"));
   }
-  if (context.out().format() == Format::kJson) arguments.push_back("--json");
   const std::string output = invocation.Text("output", defaults.empty() ? "" : defaults.back());
+  if (context.out().format() == Format::kJson) arguments.push_back("--json");
   if (context.options().quiet) arguments.push_back("--quiet");
   return RunHelper(arguments, output);
 }
@@ -123,6 +124,11 @@ ExitCode Export(Context& context, const Invocation& typed) {
 }
 
 ExitCode Video(Context& context, const Invocation& invocation) {
+  const std::string out = invocation.Text("output"), suffix = LowerSuffix(out);
+  if (suffix != ".mp4" && suffix != ".gif")
+    throw CliError(kUsage, fmt::format("-o {}: a film ends in .mp4 or .gif", out),
+                   fmt::format("regrasp video {} -o {}", invocation.Text("run"),
+                               fs::path(out).replace_extension(".mp4").string()));
   return Run(context, Checked(invocation));
 }
 

@@ -8,6 +8,7 @@
 #include "cli/client/context.h"
 #include "cli/commands/surface_file.h"
 #include "core/files/draft.h"
+#include "core/files/lower_suffix.h"
 
 namespace regrasp::cli {
 namespace {
@@ -31,7 +32,7 @@ void PrintShape(Output& out, const Json& s) {
 ExitCode Shape(Context& context, const Invocation& invocation) {
   namespace fs = std::filesystem;
   const std::string target = invocation.Text("output");
-  const std::string suffix = fs::path(target).extension().string();
+  const std::string suffix = LowerSuffix(target);
   if (invocation.Has("output") && suffix != ".ply" && suffix != ".stl")
     throw CliError(kUsage, fmt::format("-o {}: the suffix decides: .ply or .stl", target),
                    "regrasp shape -o felt.ply");

@@ -40,6 +40,9 @@ McapSummary ReadStretch(const std::string& path, const Stretch& stretch, bool wh
     return segment.offset_ns + static_cast<std::uint64_t>(std::min(time_s, 1e9) * 1e9 + 0.5);
   };
   const std::uint64_t begin = time(stretch.from_s), end = time(stretch.to_s);
+  if (const std::uint64_t last = LastTime(path, chunks); begin > last)
+    RefuseBeginning(stretch.from_s,
+                    static_cast<double>(last - std::min(last, segment.offset_ns)) * 1e-9);
   std::uint64_t count = 0;
   McapSummary summary = ReadMcap(
       path,

@@ -59,8 +59,7 @@ ExitCode VideoCommand(const Command& command) {
   options.scene_only = command.Has("--scene-only");
   const std::string& out = command.options.at("--output");
   const auto begin = Clock::now();
-  RunWindow window(command.file,
-                   {std::max(0.0, options.stretch.from_s - kCurveWindow_s), options.stretch.to_s});
+  RunWindow window(command.file, options.stretch, kCurveWindow_s);
   const Json differences = TellDifferences(window.file());
   if (!window.note().empty()) Note(window.note());
   VideoResult result;

@@ -112,7 +112,8 @@ int RunVerb(int argc, char** argv,
                command.verb);
     return static_cast<int>(ExitCode::kUsage);
   } catch (const cli::CliError& e) {
-    return TellFailure(command, ShownText(e.what()), ShownText(e.hint), e.code);
+    return TellFailure(command, ShownText(e.what()),
+                       e.hint.empty() ? "regrasp help " + command.verb : ShownText(e.hint), e.code);
   } catch (const ModelError& e) {
     return TellFailure(command, e.what(), "regrasp record list", ExitCode::kIo);
   } catch (const std::exception& e) {

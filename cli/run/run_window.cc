@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/client/errors.h"
 #include "core/journal/check.h"
 #include "core/journal/saved_state.h"
 
@@ -31,11 +32,27 @@ std::unique_ptr<Replay> ReplayFrom(const Journal& journal, const RunSavedState& 
 
 }  // namespace
 
-RunWindow::RunWindow(const std::string& path, Stretch stretch)
+void RefuseBeginning(double from_s, double end_s) {
+  throw cli::CliError(ExitCode::kUsage,
+                      fmt::format("--from {:g} s: the run ends at {:g} s", from_s, end_s));
+}
+
+std::uint64_t LastTime(const std::string& path, const std::vector<McapChunk>& chunks) {
+  std::uint64_t end = 0;
+  for (const McapChunk& chunk : chunks) end = std::max(end, chunk.end);
+  if (chunks.empty()) ReadMcap(path, [&](const McapMessage& m) { end = std::max(end, m.time); });
+  return end;
+}
+
+RunWindow::RunWindow(const std::string& path, Stretch stretch, double lead_s)
     : path_(path), stretch_(stretch), file_(ReadJournals(path, &chunks_)) {
   FindEnd();
-  if (end_tick() < from_tick() || stretch.to_s <= stretch.from_s)
+  if (last_tick_ < from_tick())
+    RefuseBeginning(stretch.from_s,
+                    static_cast<double>(last_tick_) * segment().journal->config.world.dt);
+  if (stretch.to_s <= stretch.from_s)
     throw std::runtime_error("nothing happens in this stretch of time");
+  stretch_.from_s = std::max(0.0, stretch.from_s - lead_s);
   try {
     if (const auto state = FindState()) {
       replay_ = ReplayFrom(*segment().journal, *state);
@@ -61,9 +78,7 @@ std::uint64_t RunWindow::FileTime(std::int64_t tick) const {
 
 void RunWindow::FindEnd() {
   const double dt_ns = segment().journal->config.world.dt * 1e9;
-  std::uint64_t end = segment().offset_ns;
-  for (const McapChunk& chunk : chunks_) end = std::max(end, chunk.end);
-  if (chunks_.empty()) ReadMcap(path_, [&](const McapMessage& m) { end = std::max(end, m.time); });
+  const std::uint64_t end = std::max(segment().offset_ns, LastTime(path_, chunks_));
   const double ticks = static_cast<double>(end - segment().offset_ns) / dt_ns;
   if (!(ticks <= static_cast<double>(kMaxTick)))
     throw std::runtime_error(

@@ -13,6 +13,7 @@
 #include "cli/run/gif.h"
 #include "cli/run/mp4_index.h"
 #include "core/files/draft.h"
+#include "core/files/lower_suffix.h"
 #include "snapshots/snapshots.h"
 
 namespace regrasp::run {
@@ -143,7 +144,7 @@ class Painter {
 
 VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std::string& out,
                        const OnPicture& on_picture) {
-  const std::string suffix = fs::path(out).extension();
+  const std::string suffix = LowerSuffix(out);
   if (suffix != ".mp4" && suffix != ".gif")
     throw std::runtime_error(out + ": a film's name ends in .mp4 or .gif");
   RemoveAbandonedDrafts(fs::path(out).parent_path());
@@ -152,7 +153,7 @@ VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std
   const double dt = config.world.dt, step_s = options.speed / options.fps;
   const double end_s = static_cast<double>(window->end_tick()) * dt;
   const int total = static_cast<int>(std::ceil((end_s - options.stretch.from_s) / step_s - 1e-9));
-  if (total <= 0) throw std::runtime_error("nothing happens in this stretch of time");
+  if (total <= 0) RefuseBeginning(options.stretch.from_s, end_s);
 
   VideoResult result;
   result.codec = suffix == ".mp4" ? "H.264" : "GIF";

@@ -173,7 +173,9 @@ class Runs(DaemonCase):
             self.assertEqual(set(pixels[:640]), {(255, 255, 255)})  # the edge stays paper white: nothing is scattered over it
         said = self.expect(0, "video", path, "-o", self.dir / "told.gif", "--from", "4", "--to", "4.4", "--fps", "10", "--scene-only").stdout
         self.assertRegex(said, r"told\.gif: 4 frames, 0\.4 s, GIF, made in [\d.]+ s \([\d.e+-]+ times real time\)\n$")
-        self.assertIn(".mp4 or .gif", self.refused(74, "video", path, "-o", self.dir / "run.avi")[0])
+        self.assertIn(".mp4 or .gif", self.refused(2, "video", path, "-o", self.dir / "run.avi")[0])
+        self.expect(0, "video", path, "-o", self.dir / "told.GIF", "--from", "4", "--to", "4.4", "--fps", "10", "--scene-only")
+        self.expect(0, "video", path, "-o", self.dir / "told.MP4", "--from", "4", "--to", "4.4", "--fps", "10", "--scene-only")
 
     def test_an_interrupted_film_leaves_nothing(self):
         path = self.record()
@@ -190,6 +192,18 @@ class Runs(DaemonCase):
             deadline -= 1
             time.sleep(0.02)
         self.assertEqual(set(self.dir.iterdir()), before)
+
+    def test_a_stretch_beyond_the_end_is_refused(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        out = self.dir / "made"
+        for words in (["replay", path], ["export", path, "--format", "csv", "-o", out], ["export", path, "--format", "mcap", "-o", out],
+                      ["export", path, "--format", "npz", "--rate", "10", "-o", out], ["video", path, "-o", out.with_suffix(".mp4")]):
+            with self.subTest(words):
+                cause, hint = self.refused(2, *words, "--from", "100")
+                self.assertRegex(cause, r"--from 100 s: the run ends at [\d.]+ s")
+                self.assertEqual(hint, f"  try: regrasp help {words[0]}")
+        self.assertEqual([f.name for f in self.dir.iterdir() if f.name.startswith(("made", ".draft"))], [])
 
     def test_interrupted_alone_it_ends_its_program_and_says_so(self):
         path = self.record()
