@@ -66,7 +66,7 @@ class Session(DaemonCase):
         self.assertEqual({contact["finger"] for contact in truth["contacts"]}, set(FINGERS))
         self.assertEqual(self.json("release", "--wait")["state"], "done")
         self.assertEqual([job["method"] for job in self.json("job", "list")["jobs"]], ["grasp", "release"])
-        self.assertIn("regrasp reset", self.json("grasp", "--wait", code=1)["error"])
+        self.assertEqual(self.refused(5, "grasp", "--wait")[1], "  try: regrasp reset")
         kinds = [event["kind"] for event in self.json("events")["events"]]
         self.assertIn("job_finished", kinds)
 
