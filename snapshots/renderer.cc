@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/common/box_corners.h"
+#include "snapshots/mesh_normals.h"
 
 namespace regrasp {
 namespace {
@@ -134,18 +135,15 @@ void DrawBox(const Body& body, int index, const Camera& camera, Buffers* out) {
 void DrawMesh(const Body& body, int index, const Camera& camera, Buffers* out) {
   const Isometry3d X_CB = camera.X_CW * body.X_WB;
   const auto& triangles = body.mesh.triangles;
-  std::vector<Vector3d> p, vertex_normal(body.mesh.vertices_O.size(), Vector3d::Zero());
+  std::vector<Vector3d> p;
   for (const Vector3d& v : body.mesh.vertices_O) p.push_back(X_CB * v);
-  for (const auto& t : triangles) {
-    const Vector3d n = (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]);
-    for (int k = 0; k < 3; ++k) vertex_normal[t[k]] += n;
-  }
-  for (Vector3d& n : vertex_normal) n.normalize();
+  const auto normals = CornerNormals(p, triangles);
   const auto pixel = [&](const Vector3d& v) {
     return cv::Point2d(camera.centre_x_px + camera.focal_px * v.x() / v.z(),
                        camera.centre_y_px + camera.focal_px * v.y() / v.z());
   };
-  for (const auto& t : triangles) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto& t = triangles[i];
     const std::array<Vector3d, 3> v = {p[t[0]], p[t[1]], p[t[2]]};
     const Vector3d face = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
     if (face.dot(v[0]) >= 0) continue;  // faces away
@@ -163,11 +161,8 @@ void DrawMesh(const Body& body, int index, const Camera& camera, Buffers* out) {
         const double w2 = 1 - w0 - w1;
         if (w0 < -1e-9 || w1 < -1e-9 || w2 < -1e-9) continue;
         const double z = 1 / (w0 / v[0].z() + w1 / v[1].z() + w2 / v[2].z());
-        const Vector3d smooth =
-            (w0 * vertex_normal[t[0]] + w1 * vertex_normal[t[1]] + w2 * vertex_normal[t[2]])
-                .normalized();
-        // Round off only what is nearly flat; a sharp edge stays sharp.
-        out->Put(x, y, z, index, smooth.dot(face) > 0.85 ? smooth : face);
+        const auto& n = normals[i];
+        out->Put(x, y, z, index, (w0 * n[0] + w1 * n[1] + w2 * n[2]).normalized());
       }
   }
 }

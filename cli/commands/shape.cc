@@ -67,7 +67,8 @@ CommandSpec ShapeCommand() {
        .extra = {{.key = "output",
                   .flags = "-o,--output",
                   .metavar = "FILE",
-                  .help = "write the surface as a closed mesh, in metres; the suffix "
+                  .help = "write the surface as a closed mesh, in metres, one point in "
+                          "each direction from the object's centre, so without holes; the suffix "
                           "decides: .ply (with what is unknown, and the error), .stl",
                   .default_text = "print what is known of it"}}});
 }

@@ -125,8 +125,9 @@ std::vector<Json> Cells(const Plan& plan, const std::string& what) {
 std::vector<Contrast> Contrasts(const Plan& plan) {
   std::vector<Contrast> contrasts;
   for (const Case& c : plan.cases) {
-    const std::string base = c.against.empty() ? plan.cases.front().name : c.against;
-    if (base != c.name) contrasts.push_back({"case", base, c.name});
+    const auto bases = c.against.empty() ? std::vector{plan.cases.front().name} : c.against;
+    for (const std::string& base : bases)
+      if (base != c.name) contrasts.push_back({"case", base, c.name});
   }
   if (!plan.rotation())
     for (std::size_t i = 1; i < plan.estimators.size(); ++i)
@@ -134,10 +135,27 @@ std::vector<Contrast> Contrasts(const Plan& plan) {
   return contrasts;
 }
 
-/// What a case has of its own where several others share it: "exploring" of "egg, exploring".
-std::string Label(const std::string& name) {
-  const auto comma = name.rfind(", ");
-  return comma == std::string::npos ? name : name.substr(comma + 2);
+std::vector<std::string> Parts(const std::string& name) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (auto comma = name.find(", "); comma != name.npos; comma = name.find(", ", begin)) {
+    parts.push_back(name.substr(begin, comma - begin));
+    begin = comma + 2;
+  }
+  parts.push_back(name.substr(begin));
+  return parts;
+}
+
+/// What two cases differ in: "planned" and "exploring" of "egg, planned" and "egg, exploring"; the
+/// names where that is not one part.
+std::pair<std::string, std::string> Labels(const Contrast& contrast) {
+  const auto base = Parts(contrast.base), other = Parts(contrast.other);
+  std::pair labels{contrast.base, contrast.other};
+  if (base.size() != other.size()) return labels;
+  int differing = 0;
+  for (std::size_t i = 0; i < base.size(); ++i)
+    if (base[i] != other[i] && ++differing == 1) labels = {base[i], other[i]};
+  return differing == 1 ? labels : std::pair{contrast.base, contrast.other};
 }
 
 /// Contrasts of cases that ask the same of different objects or settings, by their labels.
@@ -145,8 +163,7 @@ std::map<std::pair<std::string, std::string>, std::vector<Contrast>> Alike(
     const std::vector<Contrast>& contrasts) {
   std::map<std::pair<std::string, std::string>, std::vector<Contrast>> alike;
   for (const Contrast& contrast : contrasts)
-    if (contrast.what == "case")
-      alike[{Label(contrast.base), Label(contrast.other)}].push_back(contrast);
+    if (contrast.what == "case") alike[Labels(contrast)].push_back(contrast);
   std::erase_if(alike, [](const auto& item) { return item.second.size() < 2; });
   return alike;
 }

@@ -66,9 +66,12 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   std::vector<std::string> arguments = results.parts.front().plan.DaemonArguments();
   arguments.insert(arguments.end(), {"--output-dir", fs::absolute(data).string()});
   SteppedDaemon daemon(arguments);
+  // The page tells the paper's gait.
+  daemon.Call("param.set", {{"name", "gait.preset"}, {"value", "paper"}});
   const Json parameters = daemon.Call("param.get");
   for (const Json& parameter : parameters.at("parameters"))
     results.parameters[Plain(parameter.at("name"))] = parameter.at("value");
+  daemon.Call("param.set", {{"name", "gait.preset"}, {"value", "planned"}});
   Figures figures(context, &daemon, data, seed, turns);
   figures.Grasp();
   figures.Explorations(static_cast<int>(repeats));

@@ -42,7 +42,7 @@ void ExpandZoo(Plan* plan) {
       c.setting.object = object;
       c.setting.set = {{"gait.preset", gait == "planned" ? "planned" : "paper"}};
       if (gait == "returning") c.setting.set.emplace_back("gait.mode", gait);
-      c.against = fmt::format("{}, {}", object, plan->gaits.front());
+      c.against = {fmt::format("{}, {}", object, plan->gaits.front())};
       plan->cases.push_back(std::move(c));
     }
 }

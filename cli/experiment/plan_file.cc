@@ -85,8 +85,8 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
     if (json.contains("cases"))
       for (const std::string text : json.at("cases")) p.cases.push_back(ParseCase(text));
     for (Case& c : p.cases)
-      if (const Json& against = At(At(json, "against"), c.name.c_str()); against.is_string())
-        c.against = against;
+      if (const Json& against = At(At(json, "against"), c.name.c_str()); against.is_array())
+        c.against = against.get<std::vector<std::string>>();
     // Written by versions before 0.2: unknown, and so not the same as what is known.
     p.stepper = json.value("stepper", "unknown");
     p.parameters = At(json, "parameters");

@@ -189,7 +189,8 @@ double Score(const WatchedRun& run, std::size_t i, std::size_t measure, Form for
     ty += (run.time_s[k] - t_mean) * (value(k) - y_mean);
     tt += (run.time_s[k] - t_mean) * (run.time_s[k] - t_mean);
   }
-  return tt > 0 ? ty / tt : 0;
+  // Rounded, so that what is a tie is one.
+  return tt > 0 ? std::round(1e9 * ty / tt) / 1e9 : 0;
 }
 
 Json PredictionSummary(const Trials& trials) {

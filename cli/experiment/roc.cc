@@ -60,15 +60,8 @@ std::vector<RocPoint> Roc::Points() const {
 
 double ForetoldAt(const std::vector<RocPoint>& points, double false_alarms) {
   double best = 0;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const RocPoint &a = points[i], &b = points[i + 1];
-    if (b.false_alarms <= false_alarms) {
-      best = b.foretold;
-    } else if (a.false_alarms <= false_alarms) {
-      const double share = (false_alarms - a.false_alarms) / (b.false_alarms - a.false_alarms);
-      best = a.foretold + share * (b.foretold - a.foretold);
-    }
-  }
+  for (const RocPoint& point : points)
+    if (point.false_alarms <= false_alarms) best = point.foretold;
   return best;
 }
 

@@ -87,14 +87,17 @@ std::vector<Case> Sweep(const std::vector<Case>& cases, const std::string& param
   const std::size_t crossed = std::max<std::size_t>(1, cases.size());
   for (std::size_t i = 0; i < crossed; ++i) {
     const Case of = cases.empty() ? Case{} : cases[i];
-    const auto name = [&](const std::string& value) {
-      return fmt::format("{}{}{}={}", of.name, of.name.empty() ? "" : ", ", parameter, value);
+    const auto name = [&](const std::string& base, const std::string& value) {
+      return fmt::format("{}{}{}={}", base, base.empty() ? "" : ", ", parameter, value);
     };
+    std::vector<std::string> before = of.against;
+    if (before.empty() && i > 0) before = {cases.front().name};
     for (const std::string& value : values) {
       Case c = of;
-      c.name = name(value);
+      c.name = name(of.name, value);
       c.setting.set.emplace_back(parameter, value);
-      c.against = name(values.front());
+      c.against = {name(of.name, values.front())};
+      for (const std::string& base : before) c.against.push_back(name(base, value));
       swept.push_back(std::move(c));
     }
   }

@@ -24,7 +24,7 @@ struct Setting {
 struct Case {
   std::string name;
   Setting setting;
-  std::string against = {};  ///< the case it is compared with; empty: the first
+  std::vector<std::string> against = {};  ///< the cases it is compared with; none: the first
 };
 
 /// "NAME: KEY=VALUE ..." or "KEY=VALUE ..." (which is then the name, too). KEY is object, tilt,
@@ -37,7 +37,8 @@ std::string Text(const Case& c);
 Setting Join(Setting common, const Setting& special);
 
 /// The cases of a sweep: for each of `cases` (or for none) one per value, in their order. Each is
-/// compared with the one that has the first value and is otherwise the same.
+/// compared with the one that has the first value and is otherwise the same, and with what the case
+/// was compared with before, at the same value.
 std::vector<Case> Sweep(const std::vector<Case>& cases, const std::string& parameter,
                         const std::vector<std::string>& values);
 

@@ -200,7 +200,7 @@ std::string_view FewFingers(int fingers) {
   return "";
 }
 
-void DrawHand(const LoadedScenario& model, const std::string& file) {
+void DrawHand(const LoadedScenario& model, const std::string& scenario, const std::string& file) {
   SessionConfig config;
   config.model = model;
   config.parameters = DefaultParameters(model);
@@ -209,7 +209,7 @@ void DrawHand(const LoadedScenario& model, const std::string& file) {
   Frame frame;
   session.Snapshot(&frame, false);
   PlotOptions options;
-  options.title = model.hand.name + " in its preshape";
+  options.title = model.hand.name + (scenario.empty() ? ", all joints at 0" : " in its preshape");
   PlotScene(frame, model.hand, model.object, options, file);
 }
 
@@ -248,7 +248,7 @@ Answer CheckHand(const Options& options) {
   answer.text += fmt::format("\nstepper: {} ({})", stepper, choice.reason);
   for (const std::string& warning : warnings) answer.text += "\nwarning: " + warning;
   if (options.Has("--output")) {
-    DrawHand(loaded.model, options.Text("--output"));
+    DrawHand(loaded.model, loaded.scenario, options.Text("--output"));
     answer.json["picture"] = options.Text("--output");
     answer.text += "\npicture: " + options.Text("--output");
   }

@@ -21,11 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kArmature = 2e-4;  // [kg m²]: what public models of small hands use
-constexpr int kSearches = 3;        // for a hand of which no finger can be left out
-constexpr std::size_t kTried = 6;   // grasps of a search: by holding, then by using them
-constexpr std::size_t kWays = 8;    // to lay an object into a grasp, that are tried
-constexpr double kLeastBall = 30;   // that stands for it [mm]
+constexpr double kArmature = 2e-4;            // [kg m²]: what public models of small hands use
+constexpr int kSearches = 3;                  // for a hand of which no finger can be left out
+constexpr std::size_t kTried = 6;             // grasps of a search: by holding, then by using them
+constexpr std::size_t kBest = 2;              // of them, that are used more
+constexpr unsigned kUses = 3, kMoreUses = 6;  // seeds with which they are used
+constexpr std::size_t kWays = 8;              // to lay an object into a grasp, that are tried
+constexpr double kLeastBall = 30;             // that stands for it [mm]
 
 /// A ball of the search path's that is nearest in size.
 std::string BallFor(double size_mm) {
@@ -201,16 +203,8 @@ class Maker {
       found.Try(search_.seed);
       tried.push_back(found);
     }
-    const auto better = [](const Found& a, const Found& b) { return a.Better(b); };
-    std::ranges::stable_sort(tried, better);
-    tried.resize(std::min(tried.size(), kTried));
-    for (std::size_t k = 0; k < tried.size(); ++k) {
-      progress_.Show("exploring and turning with it", static_cast<double>(k) / kTried);
-      Found& found = tried[k];
-      if (found.Good() && CanBeUsed(found.model.hand))
-        found.use = TryToUse(found.model, found.choice.stepper, search_.seed);
-    }
-    std::ranges::stable_sort(tried, better);
+    Rank(&tried, kTried, 0, kUses);
+    Rank(&tried, kBest, kUses, kMoreUses);
     return tried.empty() ? Found{} : tried.front();
   }
 
@@ -227,6 +221,22 @@ class Maker {
       found.Try(search_.seed);
       tried->push_back(found);
     }
+  }
+
+  /// Tries the first `count` that are good in use, with `seeds` seeds after `before` that they have
+  /// had, and puts them in order.
+  void Rank(std::vector<Found>* tried, std::size_t count, unsigned before, unsigned seeds) {
+    const auto better = [](const Found& a, const Found& b) { return a.Better(b); };
+    std::ranges::stable_sort(*tried, better);
+    tried->resize(std::min(tried->size(), count));
+    for (std::size_t k = 0; k < tried->size(); ++k) {
+      progress_.Show("exploring and turning with it",
+                     static_cast<double>(k) / static_cast<double>(tried->size()));
+      Found& found = (*tried)[k];
+      if (found.Good() && CanBeUsed(found.model.hand))
+        found.use += TryToUse(found.model, found.choice.stepper, search_.seed + before, seeds);
+    }
+    std::ranges::stable_sort(*tried, better);
   }
 
   Sheet MakeSheet() const {

@@ -32,7 +32,7 @@ std::string Sheet::Tried() const {
     told += fmt::format(
         "\n  with {}: exploring raises phi in {} of {}; {} of {} turns, {} within {:g} mm and "
         "{:g}°",
-        kUses, use.rose, use.explorations, use.turned, use.turns, use.clean, kCleanOffset,
+        use.turns, use.rose, use.explorations, use.turned, use.turns, use.clean, kCleanOffset,
         kCleanTilt);
   return told;
 }

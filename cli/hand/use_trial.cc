@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <string>
+#include <vector>
 
 #include "cli/hand/trial.h"
 #include "core/session/session.h"
@@ -24,7 +27,48 @@ JobRecord Run(Session& session, Command command, double longest_s) {
   return ended;
 }
 
+UseTrial UseOnce(const LoadedScenario& model, Stepper stepper, std::uint64_t seed) {
+  UseTrial trial;
+  trial.explorations = model.hand.num_fingers();
+  trial.turns = 1;
+  const Grasped grasped = GraspWith(model, stepper, seed);
+  if (!grasped.held()) return trial;
+  Session& session = *grasped.session;
+  std::string state;
+  session.Save(&state);
+  for (int f = 0; f < model.hand.num_fingers(); ++f) {
+    Command explore;
+    explore.type = CommandType::kExplore;
+    explore.finger = f;
+    explore.seed = seed;
+    const ExploreResult result = Run(session, explore, kLongestExploration).explore;
+    if (session.state() == SessionState::kFaulted) return trial;
+    if (grasped.held() && result.phi_true_final > result.phi_true_initial) ++trial.rose;
+    session.Load(state);
+  }
+  Command rotate;
+  rotate.type = CommandType::kRotate;
+  rotate.axis_W = -Vector3d::UnitZ();
+  rotate.angle_rad = 2 * M_PI;
+  const JobRecord job = Run(session, rotate, kLongestTurn);
+  if (job.state != JobState::kDone || job.rotate.dropped) return trial;
+  trial.turned = 1;
+  if (1e3 * job.rotate.max_position_error_m <= kCleanOffset &&
+      job.rotate.max_tilt_rad * 180 / M_PI <= kCleanTilt)
+    trial.clean = 1;
+  return trial;
+}
+
 }  // namespace
+
+UseTrial& UseTrial::operator+=(const UseTrial& more) {
+  explorations += more.explorations;
+  rose += more.rose;
+  turns += more.turns;
+  turned += more.turned;
+  clean += more.clean;
+  return *this;
+}
 
 double UseTrial::Points() const {
   const auto share = [](int of, int all) { return all > 0 ? static_cast<double>(of) / all : 0.0; };
@@ -36,36 +80,14 @@ bool CanBeUsed(const HandModel& hand) {
          std::ranges::all_of(hand.fingers, [](const Finger& f) { return f.joints.size() >= 3; });
 }
 
-UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed) {
-  UseTrial trial;
-  for (unsigned k = 0; k < kUses; ++k) {
-    trial.explorations += model.hand.num_fingers();
-    trial.turns += 1;
-    const Grasped grasped = GraspWith(model, stepper, seed + k);
-    if (!grasped.held()) continue;
-    std::string state;
-    grasped.session->Save(&state);
-    for (int f = 0; f < model.hand.num_fingers(); ++f) {
-      Command explore;
-      explore.type = CommandType::kExplore;
-      explore.finger = f;
-      explore.seed = seed + k;
-      const ExploreResult result = Run(*grasped.session, explore, kLongestExploration).explore;
-      if (grasped.held() && result.phi_true_final > result.phi_true_initial) ++trial.rose;
-      grasped.session->Load(state);
-    }
-    Command rotate;
-    rotate.type = CommandType::kRotate;
-    rotate.axis_W = -Vector3d::UnitZ();
-    rotate.angle_rad = 2 * M_PI;
-    const JobRecord job = Run(*grasped.session, rotate, kLongestTurn);
-    if (job.state != JobState::kDone || job.rotate.dropped) continue;
-    ++trial.turned;
-    if (1e3 * job.rotate.max_position_error_m <= kCleanOffset &&
-        job.rotate.max_tilt_rad * 180 / M_PI <= kCleanTilt)
-      ++trial.clean;
-  }
-  return trial;
+UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed,
+                  unsigned seeds) {
+  std::vector<std::future<UseTrial>> trials;
+  for (unsigned k = 0; k < seeds; ++k)
+    trials.push_back(std::async(std::launch::async, UseOnce, std::cref(model), stepper, seed + k));
+  UseTrial all;
+  for (auto& trial : trials) all += trial.get();
+  return all;
 }
 
 }  // namespace regrasp::hand

@@ -17,19 +17,19 @@ struct UseTrial {
   int clean = 0;         ///< of those, with the object within kCleanOffset and kCleanTilt
 
   bool any() const { return turns > 0; }
+  UseTrial& operator+=(const UseTrial& more);
   /// 0 .. 3: the shares that rose, turned and were clean.
   double Points() const;
 };
 
-inline constexpr int kUses = 4;            ///< seeds of a UseTrial
 inline constexpr double kCleanOffset = 5;  ///< of the object's centre from its first place [mm]
 inline constexpr double kCleanTilt = 10;   ///< of the axis that it turns about [deg]
 
 /// Whether a hand can do either: four fingers or more, each of three driven joints or more.
 bool CanBeUsed(const HandModel& hand);
 
-/// Noise `paper`, kUses seeds from this one on. Where the object is not grasped nothing rises and
-/// nothing turns.
-UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed);
+/// Noise `paper`, `seeds` seeds from this one on, side by side. Where the object is not grasped
+/// nothing rises and nothing turns.
+UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed, unsigned seeds);
 
 }  // namespace regrasp::hand

@@ -185,7 +185,11 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
   if (there()) return Enter(GaitPhase::kFinish);  // while fingers regrasped
   idle_cycles_ = turned_before_ - turned_until_ < tick.gait.progress ? idle_cycles_ + 1 : 0;
   turned_until_ = turned_before_;
-  if (idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles)) {
+  // Forward what a reference that forgives has given up is no way ahead.
+  stale_cycles_ = turned_before_ - turned_most_ < tick.gait.progress ? stale_cycles_ + 1 : 0;
+  turned_most_ = std::max(turned_most_, turned_before_);
+  if (idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles) &&
+      (!planned(tick) || stale_cycles_ <= kStale * tick.gait.patience)) {
     StartMotion(tick.gait, wrench);
     return;
   }

@@ -130,6 +130,8 @@ class FingerGait {
     v("along", along_);
     v("gain", gain_);
     v("idle_cycles", idle_cycles_);
+    v("stale_cycles", stale_cycles_);
+    v("turned_most", turned_most_);
     v("refused_finger", refused_finger_, v.Finger());
     v("sought", sought_);
     v("refused_margin", refused_margin_, kUnbounded);
@@ -255,11 +257,13 @@ class FingerGait {
   Regrasp regrasp_;
   FingerSet waiting_;  // the fingers that have not had their turn in this cycle
   double turned_before_ = 0, turned_until_ = 0;  // now; when the last cycle ended [rad]
+  double turned_most_ = 0;                       // at the end of any cycle [rad]
   double turned_meanwhile_ = 0;  // of the present cycle, while fingers regrasped [rad]
   TurnAlong along_;
-  int idle_cycles_ = 0;
-  int refused_finger_ = -1;  // in this cycle
-  bool sought_ = false;      // another stance, in this cycle
+  int idle_cycles_ = 0, stale_cycles_ = 0;
+  static constexpr int kStale = 3;  // times gait.patience: cycles that turn the object no further
+  int refused_finger_ = -1;         // in this cycle
+  bool sought_ = false;             // another stance, in this cycle
   double refused_margin_ = 0, refused_below_ = 0;
   LandingPlan plan_;
   std::array<Landing, kMaxFingers> landing_{};  // the last one of each finger

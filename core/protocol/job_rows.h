@@ -110,14 +110,15 @@ inline constexpr std::array kJobRows = {
         "where it never moved or the simulation faulted), end_finger (whose limit it was, or "
         "null), max_position_error_m, max_rotation_error_rad (object against its reference), "
         "sim_time_s; what was achieved and the errors are noise-free, from the simulator"},
-    MethodSpec{
-        "explore", "explore", "improve the grasp by sliding one finger over the surface", kExplore,
-        true,
-        "job; its record: finger, criterion, estimator, seed, converged, reason (gradient, "
-        "max_cycles, contact_lost, dropped, cancelled, object_moved, no_gain; null until it has "
-        "ended), cycles, phi_initial, phi_final, phi_true_initial, phi_true_final "
-        "(noise-free, from the simulator, for judging only; null until they are "
-        "known), path_length_m"},
+    MethodSpec{"explore", "explore", "improve the grasp by sliding one finger over the surface",
+               kExplore, true,
+               "job; its record: finger, criterion, estimator, seed, converged, reason (gradient, "
+               "max_cycles, contact_lost, dropped, cancelled, object_moved, no_gain, fell (it "
+               "converged, but phi is "
+               "2 % or more lower than where it began); null until it has ended), cycles, "
+               "phi_initial, phi_final, phi_true_initial, phi_true_final "
+               "(noise-free, from the simulator, for judging only; null until they are "
+               "known), path_length_m"},
 };
 
 }  // namespace regrasp::rows

@@ -21,6 +21,7 @@ enum class ExploreReason : std::uint8_t {
   kCancelled,
   kObjectMoved,  ///< the other fingers could not carry what the finger dragged
   kNoGain,       ///< the best phi met rose too little for exploration.no_gain_s
+  kFell,         ///< the search converged, and phi is clearly lower than where it began
 };
 
 /// Why a move ended.
@@ -59,7 +60,7 @@ struct ExploreResult {
     v("criterion", criterion, kLastCriterion);
     v("estimator", estimator, Estimator::kLeastSquares);
     v("converged", converged);
-    v("reason", reason, ExploreReason::kNoGain);
+    v("reason", reason, ExploreReason::kFell);
     v("cycles", cycles);
     v("phi_initial", phi_initial);
     v("phi_final", phi_final);

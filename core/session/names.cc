@@ -36,6 +36,8 @@ std::string_view Name(ExploreReason reason) {
       return "max_cycles";
     case ExploreReason::kNoGain:
       return "no_gain";
+    case ExploreReason::kFell:
+      return "fell";
     case ExploreReason::kObjectMoved:
       return "object_moved";
     case ExploreReason::kContactLost:

@@ -37,10 +37,11 @@ void Session::Impl::RecordFinger(int finger, const KinematicsData& kinematics,
   f.f_command_W = controller.commanded_forces()[finger];
   f.manipulability = estimate.manipulability;
   f.load_margin_without = monitor.load_margin_without(finger);
+  const JointVector& q = estimator.estimate().q;
   f.joint_limit_margin = 1e9;
   for (int j : hand.fingers[finger].joints)
-    f.joint_limit_margin = std::min({f.joint_limit_margin, truth.q[j] - hand.joints[j].lower,
-                                     hand.joints[j].upper - truth.q[j]});
+    f.joint_limit_margin =
+        std::min({f.joint_limit_margin, q[j] - hand.joints[j].lower, hand.joints[j].upper - q[j]});
   f.true_tip_W = FingertipCentre(hand, kinematics, finger);
   for (const ObjectContact& contact : truth.contacts)
     if (contact.finger == finger) f.true_force_W += contact.force_W;

@@ -131,13 +131,22 @@ std::string FrictionText(const Incident& incident) {
   return fmt::format(" Friction was {:.2g}, where control counts on {:.2g}.", friction, counted_on);
 }
 
+std::string MassText(const Incident& incident) {
+  constexpr double kMuch = 1.25;
+  const double mass = incident.frames.back()->mass_kg;
+  const double counted_on = incident.parameters.control.mass_estimate;
+  if (mass <= kMuch * counted_on && counted_on <= kMuch * mass) return "";
+  return fmt::format(" The object weighed {:.3g} g, where load margins count on {:.3g} g.",
+                     1e3 * mass, 1e3 * counted_on);
+}
+
 std::string Cause(const Incident& incident, const HandModel& hand) {
   const bool dropped = incident.event.kind == EventKind::kDropped;
   std::string text = dropped ? "Dropped" : fmt::format("Stopped ({})", incident.event.text);
   if (incident.frames.empty()) return text + "; nothing is known of the time before.";
   text += " while " + Situation(incident, hand) + ": " + DisturbanceText(incident);
   return text + "; " + EndsText(incident, hand) + "." + MarginText(incident) +
-         FrictionText(incident);
+         FrictionText(incident) + MassText(incident);
 }
 
 }  // namespace

@@ -319,5 +319,24 @@ TEST(Rotate, SameSeedSameBits) {
   EXPECT_EQ(hash[0], hash[1]);
 }
 
+// A long bar about its length, which this hand cannot turn so: it goes on a little, gives way and
+// goes on again. That is no way ahead, and the job ends.
+TEST(Rotate, AGaitThatTurnsTheObjectNoFurtherEnds) {
+  SessionConfig config = Config(62);
+  ObjectModel& bar = config.model.object;
+  bar.kind = ObjectModel::Kind::kBox;
+  bar.half_extents = Vector3d(0.015, 0.015, 0.055);
+  bar.bounding_radius = bar.half_extents.norm();
+  const Vector3d squares = bar.half_extents.cwiseAbs2();
+  bar.I_OCom =
+      (bar.mass / 3 * (Vector3d::Constant(squares.sum()) - squares)).asDiagonal().toDenseMatrix();
+  Session session(config);
+  Grasp(session);
+  session.Apply(Turn(360, Vector3d::UnitY()));
+  const JobRecord job = Finish(session, 400);
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_LT(job.rotate.turns, 1);
+}
+
 }  // namespace
 }  // namespace regrasp

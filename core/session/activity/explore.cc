@@ -1,11 +1,13 @@
 #include "core/session/activity/explore.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace regrasp {
 namespace {
 
 constexpr int kPathTicks = 10;  // from one look at the path to the next
+constexpr double kFall = 0.02;  // of phi: more than its noise
 
 ExploreReason ReasonOf(FingerExploration::End end) {
   switch (end) {
@@ -141,6 +143,9 @@ void ExploreActivity::Assess(const ActivityContext& context) {
   result.phi_final = exploration_.phi_final();
   if (exploration_.end() != FingerExploration::End::kNone)
     result.reason = ReasonOf(exploration_.end());
+  if (result.reason == ExploreReason::kGradient &&
+      result.phi_initial - result.phi_final > kFall * std::abs(result.phi_initial))
+    result.reason = ExploreReason::kFell;
   result.converged = result.reason == ExploreReason::kGradient;
 }
 

@@ -78,7 +78,9 @@ TEST(Roc, ThresholdKeepsTheFalseAlarms) {
   }
   EXPECT_LE(alarms, 0.1 * good);
   EXPECT_GE(alarms + 1, std::floor(0.1 * good));
-  EXPECT_EQ(ForetoldAt({{0, 0}, {0.5, 0.8}, {1, 1}}, 0.25), 0.4);
+  // Between two points no threshold lies.
+  EXPECT_EQ(ForetoldAt({{0, 0}, {0.5, 0.8}, {1, 1}}, 0.25), 0);
+  EXPECT_EQ(ForetoldAt({{0, 0}, {0.5, 0.8}, {1, 1}}, 0.5), 0.8);
   EXPECT_EQ(ForetoldAt({{0, 0}, {0, 0.3}, {1, 1}}, 0), 0.3);
 }
 
