@@ -61,7 +61,7 @@ Json Thinned(const std::vector<RocPoint>& roc) {
   Json points = Json::array();
   for (int k = 0; k < kRocPoints; ++k) {
     const double alarms = static_cast<double>(k) / (kRocPoints - 1);
-    points.push_back({alarms, ForetoldAt(roc, alarms)});
+    points.push_back({alarms, OnCurve(roc, alarms)});
   }
   return points;
 }

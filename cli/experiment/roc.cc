@@ -65,6 +65,20 @@ double ForetoldAt(const std::vector<RocPoint>& points, double false_alarms) {
   return best;
 }
 
+double OnCurve(const std::vector<RocPoint>& points, double false_alarms) {
+  double best = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const RocPoint &a = points[i], &b = points[i + 1];
+    if (b.false_alarms <= false_alarms) {
+      best = b.foretold;
+    } else if (a.false_alarms <= false_alarms) {
+      const double share = (false_alarms - a.false_alarms) / (b.false_alarms - a.false_alarms);
+      best = a.foretold + share * (b.foretold - a.foretold);
+    }
+  }
+  return best;
+}
+
 double Roc::Threshold(double false_alarms) const {
   const double most = false_alarms * static_cast<double>(size() - fails_);
   double alarms = 0;

@@ -43,8 +43,12 @@ class Roc {
   std::size_t fails_ = 0;
 };
 
-/// The share foretold with so many false alarms, between the points of a ROC linearly.
+/// The share foretold at the lowest threshold that gives so many false alarms at most. Between the
+/// points of a ROC lies no threshold: scores that are equal are above it together or not at all.
 double ForetoldAt(const std::vector<RocPoint>& points, double false_alarms);
+
+/// The curve through the points of a ROC, between them linearly: equal scores drawn by lot.
+double OnCurve(const std::vector<RocPoint>& points, double false_alarms);
 
 /// How often each of `runs` runs is drawn in each of `resamples` bootstrap samples of runs, always
 /// by the same random numbers.

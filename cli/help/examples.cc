@@ -19,7 +19,7 @@ constexpr Example kExamples[] = {
 
     {"grasp", "regrasp grasp --wait", "until the object is held"},
     {"release", "regrasp release --wait", "until the hand is open"},
-    {"rotate", "regrasp rotate --angle 90 --wait", "a quarter turn about z, along the stretched fingers"},
+    {"rotate", "regrasp rotate --angle 90 --wait", "a quarter turn about the hand's z"},
     {"rotate", "regrasp rotate --turns 1 --axis 0,0,-1 --wait", "once round, the other way"},
     {"rotate", "regrasp rotate --continuous", "until regrasp stop"},
     {"move", "regrasp move --by 0,0,5 --wait", "5 mm along z, without a regrasp"},

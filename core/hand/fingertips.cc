@@ -1,6 +1,7 @@
 #include "core/hand/fingertips.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace regrasp {
 
@@ -48,7 +49,14 @@ bool Fingertips::Find(std::size_t finger, const Isometry3d& X_LG, const std::vec
     best_score = score(shape.b_L);
   }
   if (best < 0) return false;
-  std::rotate(link->shapes.begin(), link->shapes.begin() + best, link->shapes.begin() + best + 1);
+  std::vector<Shape> felt = {link->shapes[static_cast<std::size_t>(best)]}, others;
+  for (std::size_t s = 0; s < link->shapes.size(); ++s)
+    if (static_cast<int>(s) != best)
+      (origin[s] == origin[static_cast<std::size_t>(best)] ? felt : others)
+          .push_back(link->shapes[s]);
+  out->tip_shapes = static_cast<int>(felt.size());
+  link->shapes = std::move(felt);
+  link->shapes.insert(link->shapes.end(), others.begin(), others.end());
   out->p_LF = link->shapes.front().b_L;
   out->tip_radius = link->shapes.front().radius;
   return true;

@@ -18,7 +18,8 @@ class Fingertips {
   bool MayBe(int link) const { return links_.contains(link); }
 
   /// Puts the fingertip's shape first among those of `link`, which carries the finger's tip link at
-  /// X_LG, and gives the finger its tip. `origin`: the URDF link of each shape. False where no
+  /// X_LG, then the others of the same URDF link, which feel as it does, and gives the finger its
+  /// tip. `origin`: the URDF link of each shape. False where no
   /// shape can be it.
   bool Find(std::size_t finger, const Isometry3d& X_LG, const std::vector<int>& origin, Link* link,
             Finger* out) const;

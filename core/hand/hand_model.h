@@ -57,6 +57,7 @@ struct Finger {
   Vector3d p_LF =
       Vector3d::Zero();   ///< centre of the tip's rounding sphere in the tip link's frame [m]
   double tip_radius = 0;  ///< [m]
+  int tip_shapes = 1;     ///< the first shapes of the tip link, which feel; the very first has p_LF
 };
 
 /// Of a hand of fewer fingers none can leave an object: the others would not hold it.

@@ -149,6 +149,9 @@ void CheckHand(const HandModel& hand) {
     CheckRange("tip_link", finger.tip_link, 1, static_cast<double>(hand.links.size()) - 1);
     CheckVector("p_LF", finger.p_LF, kMaxLength);
     CheckRange("tip_radius", finger.tip_radius, 1e-6, kMaxLength);
+    const auto& shapes = hand.links[static_cast<std::size_t>(finger.tip_link)].shapes;
+    CheckRange("tip_shapes", finger.tip_shapes, 1,
+               std::max<double>(1, static_cast<double>(shapes.size())));
   }
 }
 

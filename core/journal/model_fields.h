@@ -2,6 +2,8 @@
 
 /// The fields of everything a configuration holds. Internal to this folder.
 
+#include <type_traits>
+
 #include "core/hand/scenario.h"
 #include "core/journal/fields.h"
 #include "core/session/parameter_value.h"
@@ -71,6 +73,11 @@ void Fields(A& a, Finger& f) {
   a("tip_link", f.tip_link);
   a("p_LF", f.p_LF);
   a("tip_radius", f.tip_radius);
+  if constexpr (std::is_same_v<A, fields::Load>) {  // told where it is not 1
+    if (a.json.contains("tip_shapes")) a("tip_shapes", f.tip_shapes);
+  } else if (f.tip_shapes != 1) {
+    a("tip_shapes", f.tip_shapes);
+  }
 }
 
 template <typename A>

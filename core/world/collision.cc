@@ -34,9 +34,11 @@ Collider::Collider(const HandModel& hand, const Articulation& articulation,
       X_BL = Isometry3d::Identity();
       X_BL.translation() = -articulation.bodies[b].p_LB;
     }
-    for (const Shape& shape : hand.links[link].shapes) {
-      parts_.push_back(PartOf(shape, static_cast<int>(link), b >= 0 ? bodies[b] : nullptr, X_BL));
-      parts_.back().first = &shape == &hand.links[link].shapes.front();
+    const auto& shapes = hand.links[link].shapes;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      parts_.push_back(
+          PartOf(shapes[s], static_cast<int>(link), b >= 0 ? bodies[b] : nullptr, X_BL));
+      parts_.back().shape = static_cast<int>(s);
     }
   }
 
@@ -77,7 +79,7 @@ void Collider::Collide(FixedVector<ObjectHit, kMaxObjectContacts>* object_hits,
   for (const CollisionPart& part : parts_) {
     if (!MayTouch(part, object_)) continue;
     const int n = object_.ContactsWith(part, found);
-    for (int k = 0; k < n; ++k) Keep({part.link, part.first, part.body, found[k]}, object_hits);
+    for (int k = 0; k < n; ++k) Keep({part.link, part.shape, part.body, found[k]}, object_hits);
   }
   for (const Pair& pair : pairs_) {
     const CollisionPart &a = parts_[pair.a], &b = parts_[pair.b];

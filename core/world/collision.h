@@ -21,7 +21,7 @@ namespace regrasp {
 /// body is the first of the contact joint.
 struct ObjectHit {
   int link = -1;
-  bool first = false;      ///< with the link's first shape: of a tip link the fingertip
+  int shape = 0;           ///< of the link's shapes
   dBodyID body = nullptr;  ///< nullptr: the static palm
   dContactGeom geom{};
 };

@@ -15,7 +15,7 @@ struct CollisionPart {
   dGeomID geom = nullptr;
   dBodyID body = nullptr;  ///< nullptr: part of the static palm
   int link = -1;
-  bool first = false;                ///< of the link's shapes: of a tip link the fingertip
+  int shape = 0;                     ///< of the link's shapes
   bool box = false;                  ///< may rest on a box with several contacts
   Vector3d p_BM = Vector3d::Zero();  ///< middle of the bounding sphere in the body (static: in W)
   Vector3d p_BA = Vector3d::Zero(),

@@ -182,7 +182,9 @@ void World::Impl::FindContacts() {
   for (const ObjectHit& hit : object_hits) {
     ObjectContact contact;
     contact.link = hit.link;
-    contact.finger = hit.first ? finger_of_tip[hit.link] : -1;
+    contact.finger = finger_of_tip[hit.link];
+    if (contact.finger >= 0 && hit.shape >= hand.fingers[contact.finger].tip_shapes)
+      contact.finger = -1;
     for (int k = 0; k < 3; ++k) {
       contact.p_WC[k] = hit.geom.pos[k];
       contact.normal_W[k] = -hit.geom.normal[k];
@@ -286,9 +288,11 @@ WorldMemory World::Memory() const {
 bool World::Impl::MayHave(const ObjectContact& contact) const {
   if (contact.link < 0 || static_cast<std::size_t>(contact.link) >= finger_of_tip.size())
     return false;
-  const bool beside = hand.links[static_cast<std::size_t>(contact.link)].shapes.size() > 1;
-  return contact.finger == finger_of_tip[static_cast<std::size_t>(contact.link)] ||
-         (beside && contact.finger == -1);
+  const int finger = finger_of_tip[static_cast<std::size_t>(contact.link)];
+  const auto shapes = hand.links[static_cast<std::size_t>(contact.link)].shapes.size();
+  return contact.finger == finger ||
+         (contact.finger == -1 &&
+          shapes > static_cast<std::size_t>(hand.fingers[finger].tip_shapes));
 }
 
 bool World::Remember(const WorldMemory& m) {

@@ -164,8 +164,8 @@ HandModel FingerWithKnob() {
   return hand;
 }
 
-TEST(Contacts, OfATipLinkOnlyItsFirstShapeIsTheFingertip) {
-  const HandModel hand = FingerWithKnob();
+TEST(Contacts, OfATipLinkOnlyTheFingertipsShapesAreTheFingers) {
+  HandModel hand = FingerWithKnob();
   for (const Stepper stepper : {Stepper::kFast, Stepper::kExact})
     for (const auto& [y, finger] : {std::pair{0.0295, 0}, {-0.0495, -1}}) {
       WorldConfig config;
@@ -177,6 +177,11 @@ TEST(Contacts, OfATipLinkOnlyItsFirstShapeIsTheFingertip) {
       EXPECT_EQ(contacts[0].link, 2);
       EXPECT_EQ(contacts[0].finger, finger);
     }
+  hand.fingers[0].tip_shapes = 2;
+  World world(hand, FarBall(), WorldConfig(), JointVector::Zero(1), At(0, -0.0495, 0.06));
+  ASSERT_EQ(world.Step(), StepStatus::kOk);
+  ASSERT_EQ(world.state().contacts.size(), 1u);
+  EXPECT_EQ(world.state().contacts[0].finger, 0);
 }
 
 TEST(WorldMemory, ContactsBesideAFingertipAreThoseOfNoFinger) {

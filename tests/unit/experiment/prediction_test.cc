@@ -81,6 +81,7 @@ TEST(Roc, ThresholdKeepsTheFalseAlarms) {
   // Between two points no threshold lies.
   EXPECT_EQ(ForetoldAt({{0, 0}, {0.5, 0.8}, {1, 1}}, 0.25), 0);
   EXPECT_EQ(ForetoldAt({{0, 0}, {0.5, 0.8}, {1, 1}}, 0.5), 0.8);
+  EXPECT_EQ(OnCurve({{0, 0}, {0.5, 0.8}, {1, 1}}, 0.25), 0.4);
   EXPECT_EQ(ForetoldAt({{0, 0}, {0, 0.3}, {1, 1}}, 0), 0.3);
 }
 

@@ -62,6 +62,22 @@ TEST_F(LoaderTest, MergesFixedLinksIntoTheirParent) {
   EXPECT_LT((tip.I_LCom - Matrix3d(expected.asDiagonal())).norm(), 1e-15);
 }
 
+TEST_F(LoaderTest, AFingertipFeelsWithTheShapesOfItsOwnLink) {
+  EditHand(
+      "</robot>",
+      R"(<link name="pad"><collision><geometry><box size="0.01 0.01 0.01"/></geometry></collision>
+      <collision><geometry><sphere radius="0.006"/></geometry></collision></link>
+    <joint name="F" type="fixed"><parent link="tip"/><child link="pad"/><origin xyz="0 0 0.03"/></joint></robot>)");
+  for (const auto& [tip_link, felt] : {std::pair{"tip", 1}, {"pad", 2}}) {
+    EditScenario("tip_link = \"tip\"", std::string("tip_link = \"") + tip_link + "\"");
+    const HandModel hand = Load().hand;
+    ASSERT_EQ(hand.links[2].shapes.size(), 3u) << tip_link;
+    EXPECT_EQ(hand.fingers[0].tip_shapes, felt) << tip_link;
+    EXPECT_EQ(hand.links[2].shapes[0].kind, Shape::Kind::kCapsule) << tip_link;
+    EXPECT_EQ(hand.links[2].shapes[0].radius, felt == 2 ? 0.006 : 0.005) << tip_link;
+  }
+}
+
 TEST_F(LoaderTest, RefusesBadHands) {
   struct Case {
     const char *from, *to;
