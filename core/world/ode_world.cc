@@ -84,6 +84,11 @@ OdeWorld::OdeWorld(const HandModel& hand, const Articulation& articulation,
     reserve.reserve_minimum = 4u << 20;
     dWorldSetStepMemoryReservationPolicy(world_, &reserve);
   }
+  // Of its own: the one that all worlds share by default is not for worlds that step in two
+  // threads.
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_),
+                                       threading_);
   contact_group_ = dJointGroupCreate(0);
   BuildHand(q0);
   BuildObject(X_WO0);
@@ -95,6 +100,7 @@ OdeWorld::~OdeWorld() {
   collider_.reset();
   dJointGroupDestroy(contact_group_);
   dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
 }
 
 void OdeWorld::Abandon() {

@@ -70,6 +70,7 @@ class OdeWorld {
   WorldConfig config_;
   dWorldID world_ = nullptr;
   dJointGroupID contact_group_ = nullptr;
+  dThreadingImplementationID threading_ = nullptr;
   std::vector<dBodyID> bodies_;
   std::vector<dJointID> joints_;  // joints_[i] is articulation.joints[i]
   dBodyID object_body_ = nullptr;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,21 @@ void Drive(World* world) {
   world->SetGravity(GraspGravity());
   world->SetTorque(torque);
   for (int k = 0; k < 300; ++k) ASSERT_EQ(world->Step(), StepStatus::kOk);
+}
+
+// As a daemon does that restores by executing again while it simulates. ODE's own threading, which
+// all worlds share by default, ends the process then.
+TEST_P(EachStepper, WorldsStepSideBySideInTwoThreads) {
+  const auto run = [] {
+    World world(Shadow().hand, Shadow().object, Config(GetParam()), GraspPosture(Shadow().hand),
+                At(0, -0.5, 0));
+    for (int k = 0; k < 3; ++k) Drive(&world);
+    return world.state().q;
+  };
+  const JointVector alone = run();
+  std::vector<std::future<JointVector>> side_by_side;
+  for (int k = 0; k < 4; ++k) side_by_side.push_back(std::async(std::launch::async, run));
+  for (auto& q : side_by_side) EXPECT_EQ(q.get(), alone);
 }
 
 TEST(World, MergedAndPlainHandMoveAlike) {
