@@ -65,7 +65,7 @@ std::size_t SizeOfVector(const std::string& name) {
 /// to another is a cell of JSON.
 Json Settled(const std::string& name, const Json& value) {
   static constexpr std::string_view kDiffers[] = {
-      "contacts", "changed_parameters", "gait", "incident", "more", "warnings"};
+      "contacts", "changed_parameters", "exploration", "gait", "incident", "more", "warnings"};
   if (value.is_null() && SizeOfVector(name) > 0) return std::vector<Json>(SizeOfVector(name));
   if (value.is_structured() && std::ranges::find(kDiffers, name) != std::end(kDiffers))
     return JsonText(value);

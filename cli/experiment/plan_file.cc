@@ -87,6 +87,8 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
     for (Case& c : p.cases)
       if (const Json& against = At(At(json, "against"), c.name.c_str()); against.is_array())
         c.against = against.get<std::vector<std::string>>();
+      else if (against.is_string())  // as versions before wrote it
+        c.against = {against.get<std::string>()};
     // Written by versions before 0.2: unknown, and so not the same as what is known.
     p.stepper = json.value("stepper", "unknown");
     p.parameters = At(json, "parameters");

@@ -33,8 +33,9 @@ std::unique_ptr<Replay> ReplayFrom(const Journal& journal, const RunSavedState& 
 }  // namespace
 
 void RefuseBeginning(double from_s, double end_s) {
-  throw cli::CliError(ExitCode::kUsage,
-                      fmt::format("--from {:g} s: the run ends at {:g} s", from_s, end_s));
+  throw cli::CliError(
+      ExitCode::kIo,
+      fmt::format("nothing happens from --from {:g} s on: the run ends at {:g} s", from_s, end_s));
 }
 
 std::uint64_t LastTime(const std::string& path, const std::vector<McapChunk>& chunks) {

@@ -188,12 +188,14 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
   // Forward what a reference that forgives has given up is no way ahead.
   stale_cycles_ = turned_before_ - turned_most_ < tick.gait.progress ? stale_cycles_ + 1 : 0;
   turned_most_ = std::max(turned_most_, turned_before_);
-  if (idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles) &&
-      (!planned(tick) || stale_cycles_ <= kStale * tick.gait.patience)) {
-    StartMotion(tick.gait, wrench);
-    return;
-  }
-  if (refused_finger_ >= 0) {
+  const bool stale = planned(tick) && stale_cycles_ > kStale * tick.gait.patience;
+  if (!stale && idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles))
+    return StartMotion(tick.gait, wrench);
+  if (stale) {
+    std::snprintf(error_, sizeof(error_),
+                  "the object cannot turn further: no farther than before in %d cycles",
+                  stale_cycles_);
+  } else if (refused_finger_ >= 0) {
     std::snprintf(error_, sizeof(error_),
                   "%s may not leave: the load margin without it is %.3f N, below %.3f N",
                   tick.hand.fingers[refused_finger_].name.c_str(), refused_margin_, refused_below_);

@@ -54,7 +54,7 @@ double GapToObject(const Bones& bones, const ControlTick& tick, const Quaternion
   return gap;
 }
 
-/// Between what the last link has beside its fingertip, which is not felt, and the object, which
+/// Between what the last link has beside its round fingertip and the object, which
 /// stands for a ball as large as the grasp that the fingertip touches at `p_OC`; at most
 /// gait.link_clearance [m]. `turn`: of the object and the finger [W].
 double GapBeside(const ControlTick& tick, int finger, const FingerPosture& there,
@@ -66,8 +66,8 @@ double GapBeside(const ControlTick& tick, int finger, const FingerPosture& there
                       radius, tick.gait.link_clearance);
 }
 
-/// For the links that are not felt, where they would touch the object: there, or once the object
-/// has turned by `turn` [rad, rotation vector in W].
+/// For what of a finger is not its round tip, where it would touch the object: there, or once the
+/// object has turned by `turn` [rad, rotation vector in W].
 double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& there,
                    const Landing& landing, const Vector3d& turn_W) {
   const Vector3d& p_WO = tick.estimate.p_WO;

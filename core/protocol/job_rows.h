@@ -115,7 +115,7 @@ inline constexpr std::array kJobRows = {
                "job; its record: finger, criterion, estimator, seed, converged, reason (gradient, "
                "max_cycles, contact_lost, dropped, cancelled, object_moved, no_gain, fell (it "
                "converged, but phi is "
-               "2 % or more lower than where it began); null until it has ended), cycles, "
+               "more than 2 % lower than where it began); null until it has ended), cycles, "
                "phi_initial, phi_final, phi_true_initial, phi_true_final "
                "(noise-free, from the simulator, for judging only; null until they are "
                "known), path_length_m"},

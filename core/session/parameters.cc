@@ -187,7 +187,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.finish_s", "s", 0, 5, "Rest at the end of a rotation, and at most gait.recover_limit_s until the object is where it shall be.", kMeasured, [](P& p) { return &p.gait.finish_s; }),
   Row("gait.progress", "rad", 0, 0.5, "A cycle that turns the object less has not turned it.", kMeasured, [](P& p) { return &p.gait.progress; }),
   Row("gait.idle_cycles", "", 0, 1000, "By the table: the gait gives up after so many cycles in a row that have not turned the object.", kMeasured, [](P& p) { return &p.gait.idle_cycles; }),
-  Row("gait.patience", "", 0, 1000, "The same with planned landings.", kMeasured, [](P& p) { return &p.gait.patience; }),
+  Row("gait.patience", "", 0, 1000, "The same with planned landings; and after three times so many in which the object has turned no farther than ever before.", kMeasured, [](P& p) { return &p.gait.patience; }),
   Row("gait.dare_cycles", "", 0, 1000, "Planned landings: after so many cycles without progress, of which a first round at rest is one, gait.friction_share of the felt friction counts even above control.feel_most.", kMeasured, [](P& p) { return &p.gait.dare_cycles; }),
   Row("gait.misses", "", 1, 1000, "Planned landings: the gait gives up after so many in a row that found no surface.", kMeasured, [](P& p) { return &p.gait.misses; }),
   Row("gait.lead_max", "rad", 0, 1.5, "A finger that ended motions at its joint limit has its target turned back further, by at most this.", kMeasured, [](P& p) { return &p.gait.lead_max; }),
