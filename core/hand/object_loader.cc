@@ -30,6 +30,7 @@ class ObjectReader {
   ObjectModel Read() {
     problems_.ThrowIfAny();
     const UrdfLink body = OneBody(file_, &problems_);
+    summed_ = problems_.empty();
     element_ = LinkElement(body.name);
     collisions_ = body.collisions;
     Isometry3d X_OL = Isometry3d::Identity();
@@ -60,10 +61,10 @@ class ObjectReader {
       problems_.Add(body.line, "{}: has no <inertial>; an object needs its <mass>", element_);
     else if (!body.inertial->has_mass)
       problems_.Add(body.inertial->line, "{}: <inertial> has no <mass>", element_);
-    else if (!(body.inertial->mass > 0))
+    else if (!(body.inertial->mass > 0) && summed_)
       problems_.Add(body.inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_,
                     body.inertial->mass);
-    return problems_.count() == before;
+    return problems_.count() == before && body.inertial->mass > 0;
   }
 
   /// The shape, about the centre of mass.
@@ -142,8 +143,9 @@ class ObjectReader {
       const Solid solid = ObjectSolid(object_);
       object_.I_OCom = solid.inertia * (object_.mass / solid.volume);
     } else if (!inertial_.has_inertia) {
-      return computes(WhatLacks(inertial_));
+      return computes("<inertial> has no <inertia>");
     }
+    if (!summed_) return;
     if (const std::string why = WhyNoInertia(object_.I_OCom); !why.empty()) return computes(why);
     if (!whole) return;
     for (const Impossible& reason : WhyNoBody(object_)) {
@@ -164,6 +166,7 @@ class ObjectReader {
   ObjectFacts* facts_out_;
   ObjectFacts facts_;
   Matrix3d R_OL_;
+  bool summed_ = false;      // its links, without a problem
   bool from_shape_ = false;  // centre and inertia
   std::string element_;
   std::vector<UrdfCollision> collisions_;

@@ -70,6 +70,11 @@ TEST_F(ObjectProblems, TheShapeGivesTheInertiaButNotTheMass) {
   const Lines no_mass = {"ball.urdf:2: link \"object\": <inertial> has no <mass>"};
   EXPECT_EQ(Told(), no_mass);
   EXPECT_EQ(Told(true), no_mass);
+  Write("objects/ball.urdf", Replaced(Replaced(kBallUrdf, kMass, ""), kInertia, ""));
+  EXPECT_EQ(Told(), (Lines{no_mass[0],
+                           "ball.urdf:2: link \"object\": <inertial> has no "
+                           "<inertia>; --inertia-from-shape computes it"}));
+  EXPECT_EQ(Told(true), no_mass);
   EditBall("<inertial>" + kMass + kInertia + "</inertial>", "");
   const Lines none = {
       "ball.urdf:1: link \"object\": has no <inertial>; an object needs its <mass>"};
@@ -83,6 +88,19 @@ TEST_F(ObjectProblems, TheShapeGivesTheInertiaButNotTheMass) {
   EXPECT_EQ(Told(), Lines{"ball.urdf:2: link \"object\": <inertial> has no <inertia>; "
                           "--inertia-from-shape computes it"});
   EXPECT_EQ(Told(true), Lines{});
+}
+
+// Their sum is not told besides.
+TEST_F(ObjectProblems, OfSeveralLinksWithoutMassEachIsTold) {
+  Write("objects/ball.urdf",
+        Replaced(Replaced(kBallUrdf, kMass, ""), "</robot>",
+                 "<link name=\"lid\"><inertial>" + kInertia +
+                     "</inertial></link><joint name=\"fix\" type=\"fixed\"><parent "
+                     "link=\"object\"/><child link=\"lid\"/></joint></robot>"));
+  const Lines told = Told();
+  ASSERT_EQ(told.size(), 2u);
+  for (const std::string& line : told)
+    EXPECT_TRUE(line.ends_with("<inertial> has no <mass>")) << line;
 }
 
 }  // namespace
