@@ -65,6 +65,32 @@ TEST(Session, EachFingerExploresUphillWithoutDrop) {
   }
 }
 
+// A search that keeps its start gradient and takes it for converged goes where the seed points.
+TEST(Session, ASearchThatConvergesLowerThanItBeganHasFallen) {
+  int fallen = 0, risen = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    SessionRun run(2);
+    ASSERT_TRUE(run.Grasp());
+    run.Set("exploration.lambda", 0.999);
+    run.Set("exploration.sigma", 1);
+    run.Set("exploration.epsilon", 1000);
+    run.Set("exploration.converged_updates", 10);
+    run.Set("exploration.worth_returning", 2);
+    run.Set("exploration.tries", 1);
+    run.Set("exploration.no_gain_s", 0);
+    ASSERT_EQ(run.Explore(2, seed).kind, Kind::kAllowed);
+    ASSERT_TRUE(run.FinishJob(30));
+    const ExploreResult& result = run.Job().explore;
+    const bool lower = result.phi_final < 0.98 * result.phi_initial;
+    EXPECT_EQ(result.reason, lower ? ExploreReason::kFell : ExploreReason::kGradient) << seed;
+    EXPECT_EQ(result.converged, !lower) << seed;
+    EXPECT_EQ(run.Job().state, JobState::kDone);
+    (lower ? fallen : risen) += 1;
+  }
+  EXPECT_GT(fallen, 0);
+  EXPECT_GT(risen, 0);
+}
+
 // The others shift their contacts until the thumb may leave (the paper's S_F), or say why it may
 // not.
 TEST(Session, MakesRoomForAnExplorerThatMayNotLeaveYet) {
