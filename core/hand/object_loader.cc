@@ -7,7 +7,6 @@
 #include <system_error>
 #include <vector>
 
-#include "core/hand/body_check.h"
 #include "core/hand/object_pieces.h"
 #include "core/hand/rigid_body.h"
 #include "core/hand/solid.h"
