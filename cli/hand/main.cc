@@ -24,7 +24,7 @@ double Options::Number(const std::string& flag, double otherwise, double min, do
   if (text.empty() || *end != '\0' || !(value >= min && value <= max))
     throw Failure(ExitCode::kUsage,
                   fmt::format("{} {}: expected a number from {} to {}", flag, Shown(text),
-                              LimitText(min), LimitText(max)),
+                              LeastText(min), MostText(max)),
                   "regrasp help hand " + verb);
   return value;
 }

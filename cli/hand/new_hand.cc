@@ -6,6 +6,7 @@
 
 #include "cli/hand/fewer_fingers.h"
 #include "cli/hand/hand_command.h"
+#include "cli/hand/held_ball.h"
 #include "cli/hand/lay_object.h"
 #include "cli/hand/progress.h"
 #include "cli/hand/scenario_file.h"
@@ -22,26 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kArmature = 2e-4;            // [kg m²]: what public models of small hands use
-constexpr int kSearches = 3;                  // for a hand of which no finger can be left out
+constexpr int kSearches = 3;                  // of other starts, where the first ones' best is poor
 constexpr std::size_t kTried = 6;             // grasps of a search: by holding, then by using them
 constexpr std::size_t kBest = 2;              // of them, that are used more
 constexpr unsigned kUses = 3, kMoreUses = 6;  // seeds with which they are used
 constexpr std::size_t kWays = 8;              // to lay an object into a grasp, that are tried
 constexpr double kLeastBall = 30;             // that stands for it [mm]
-
-/// A ball of the search path's that is nearest in size.
-std::string BallFor(double size_mm) {
-  struct Ball {
-    const char* name;
-    double size_mm;
-  };
-  static constexpr Ball kBalls[] = {
-      {"sphere_40mm", 40}, {"sphere_45mm", 45}, {"sphere", 50}, {"sphere_60mm", 60}};
-  const Ball* best = kBalls;
-  for (const Ball& ball : kBalls)
-    if (std::abs(ball.size_mm - size_mm) < std::abs(best->size_mm - size_mm)) best = &ball;
-  return best->name;
-}
 
 class Maker {
  public:
@@ -54,7 +41,7 @@ class Maker {
         progress_(options.Has("--quiet")) {
     search_.seed = static_cast<std::uint64_t>(options.Number("--seed", 1, 0, 9e15));
     gravity_W_ = 9.81 * Vector3d(0, std::cos(tilt_), std::sin(tilt_));
-    search_.task.weight = 0.08 * gravity_W_;
+    search_.task.weight = kBallMass * gravity_W_;
     search_.progress = [this](double done, double) {
       progress_.Show("searching a grasp" + without_, done);
     };
@@ -63,12 +50,12 @@ class Maker {
   Answer Make() {
     out_.Check();
     Read();
-    if (!object_.empty()) ReadObject();
-    const int searches = all_.num_fingers() < kFewestToRegrasp ? kSearches : 1;
-    for (int k = 0; k < searches; ++k)
-      for (const double size_mm : sizes_mm_) Search(0, size_mm, k);
-    for (int out = 1; out <= 2; ++out)
-      for (const double size_mm : sizes_mm_) Search(out, size_mm, 0);
+    if (object_.empty())
+      ball_ = BallOf(size_mm_, out_.BallName());
+    else
+      ReadObject();
+    if (!ball_.urdf.empty()) out_.CheckBall();
+    SearchAll();
     hand_ = best_.any() ? best_.model.hand : all_;
     for (const HandLayout::Finger& finger : whole_.fingers)
       if (std::ranges::none_of(guess_.layout.fingers,
@@ -136,11 +123,25 @@ class Maker {
     for (const double size : BallsFor(box_, 1e-3 * kLeastBall)) sizes_mm_.push_back(1e3 * size);
   }
 
-  /// With `out` fingers left out, while nothing was found that holds: one, the best choice of it;
-  /// two, the first that holds. `again`: other starts than before.
+  /// With other starts where the best for a ball is not good in use (an object takes long enough),
+  /// or nothing is good and no finger can be spared; with fewer fingers where nothing holds.
+  void SearchAll() {
+    const int n = all_.num_fingers();
+    const int searches = n < kFewestToRegrasp ? kSearches : 1;
+    for (int k = 0; k < searches; ++k)
+      for (const double size_mm : sizes_mm_)
+        if (!best_.Good()) Search(0, size_mm, k);
+    for (int k = 1; k < kSearches; ++k)
+      if (object_.empty() && best_.Good() && !best_.use.Good()) Search(0, size_mm_, k);
+    for (int out = 1; out <= 2 && n - out >= 3; ++out)
+      for (const double size_mm : sizes_mm_)
+        if (!best_.Holds()) Search(out, size_mm, 0);
+  }
+
+  /// With `out` fingers left out: one, the best choice of it; two, the first that holds. `again`:
+  /// other starts than before.
   void Search(int out, double size_mm, int again) {
     const int n = all_.num_fingers();
-    if (best_.Good() || (out > 0 && (best_.Holds() || n - out < 3))) return;
     search_.task.radius = 0.5e-3 * size_mm;
     GraspSearch search = search_;
     search.seed += static_cast<std::uint64_t>(again) << 32;
@@ -188,13 +189,13 @@ class Maker {
       if (found.way.stuck >= 0 && k + 1 < count) continue;
       Scenario& scenario = found.model.scenario;
       scenario.name = scenario.hand = hand_.name;
-      scenario.object = object_.empty() ? BallFor(size_mm) : named_object_;
+      scenario.object = object_.empty() ? ball_.name : named_object_;
       scenario.q_preshape = found.way.open;
       scenario.q_closed = found.way.closed;
       scenario.X_WO.translation() = found.grasp.p_WO;
       scenario.gravity_W = gravity_W_;
       found.model.hand = hand_;
-      found.model.object = object_.empty() ? LoadObject(scenario.object, ModelSearchPath()) : body_;
+      found.model.object = object_.empty() ? ball_.model : body_;
       if (!object_.empty()) {
         touched_ = true;
         TryWays(found, &tried);
@@ -249,6 +250,7 @@ class Maker {
     sheet.report = report_;
     sheet.best = best_;
     sheet.ball = object_.empty();
+    if (!ball_.urdf.empty()) sheet.ball_file = ball_.name;
     sheet.ways = ways_;
     return sheet;
   }
@@ -259,14 +261,22 @@ class Maker {
     text.layout = guess_.layout;
     text.options = options_.load();
     text.scenario = best_.model.scenario;
-    text.comments = {
-        fmt::format("Made by: regrasp hand new {} -o {} {}--object-size {:g} --seed {} "
-                    "--tilt {:g}",
-                    urdf_.filename().string(), out_.path().filename().string(),
-                    object_.empty() ? "" : "--object " + object_ + " ", size_mm_, search_.seed,
-                    tilt_ * 180 / M_PI),
-        sheet.ScoreLine()};
-    out_.Write(WriteScenario(text, hand_));
+    text.comments = {MadeBy(), sheet.ScoreLine()};
+    out_.Write(WriteScenario(text, hand_), ball_.urdf);
+  }
+
+  /// The command again, as it is typed where the scenario is.
+  std::string MadeBy() const {
+    std::string line =
+        fmt::format("Made by: regrasp hand new {} -o {}",
+                    ShellWord(named_urdf_.empty() ? urdf_.filename().string() : named_urdf_),
+                    ShellWord(out_.path().filename().string()));
+    if (!object_.empty()) line += " --object " + ShellWord(named_object_);
+    line += fmt::format(" --object-size {:g} --seed {} --tilt {:g}", size_mm_, search_.seed,
+                        tilt_ * 180 / M_PI);
+    for (const char* flag : {"--inertia-from-shape", "--fill-missing-meshes"})
+      if (options_.Has(flag)) line += fmt::format(" {}", flag);
+    return line;
   }
 
   const Options& options_;
@@ -274,6 +284,7 @@ class Maker {
   fs::path urdf_;
   std::string object_;                     // "": a ball
   std::string named_urdf_, named_object_;  // as the scenario names them
+  HeldBall ball_;                          // where it is one
   ObjectModel body_;                       // otherwise
   ObjectBox box_;
   double size_mm_, tilt_;

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <stdexcept>
+#include <string_view>
 
 #include "cli/hand/hand_command.h"
 #include "core/files/draft.h"
@@ -61,12 +64,41 @@ std::string ScenarioFile::WayTo(const fs::path& file) const {
   return fs::relative(fs::absolute(file, ignored), directory.lexically_normal(), ignored).string();
 }
 
-void ScenarioFile::Write(const std::string& text) const {
+void ScenarioFile::CheckBall() const {
+  std::error_code ignored;
+  const fs::path ball = path_.parent_path() / BallName();
+  if (fs::exists(ball, ignored))
+    throw Failure(ExitCode::kIo,
+                  fmt::format("{}: exists; nothing is overwritten, and a ball of this size needs a "
+                              "file of its own",
+                              ball.string()),
+                  "another name for -o, or remove the file");
+}
+
+void ScenarioFile::Write(const std::string& text, const std::string& ball) const {
+  const fs::path beside = path_.parent_path() / BallName();
   try {
-    WriteWhole(path_.string(), text, Draft::Existing::kKeep);
+    if (!ball.empty()) WriteWhole(beside.string(), ball, Draft::Existing::kKeep);
+    try {
+      WriteWhole(path_.string(), text, Draft::Existing::kKeep);
+    } catch (const std::runtime_error&) {
+      std::error_code ignored;
+      if (!ball.empty()) fs::remove(beside, ignored);
+      throw;
+    }
   } catch (const std::runtime_error& error) {
     throw Failure(ExitCode::kIo, error.what(), "another place for -o");
   }
+}
+
+std::string ShellWord(const std::string& word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) || c >= 0x80 || std::string_view("._/-+:@,%").find(c) < 9;
+  };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace regrasp::hand

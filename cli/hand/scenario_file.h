@@ -18,13 +18,17 @@ class ScenarioFile {
 
   /// Throws Failure unless it can be made.
   void Check() const;
+  /// The file of a ball of its own, beside it.
+  std::string BallName() const { return name() + "_ball.urdf"; }
+  /// Throws Failure where that file is there already.
+  void CheckBall() const;
   /// An object as the scenario names it: a name, or where its file is from there. Throws Failure
   /// where that is no text.
   std::string NameOfObject(const std::string& object) const;
   /// The URDF likewise: nothing where it stands beside it under the same name.
   std::string NameOfUrdf(const std::filesystem::path& urdf) const;
-  /// The whole file or none. Throws Failure(kIo).
-  void Write(const std::string& text) const;
+  /// The whole file, and that of the ball unless `ball` is empty, or none. Throws Failure(kIo).
+  void Write(const std::string& text, const std::string& ball) const;
 
  private:
   /// The way to a file from the scenario's place; empty where there is none.
@@ -32,5 +36,8 @@ class ScenarioFile {
 
   std::filesystem::path path_;
 };
+
+/// A word as a shell takes it.
+std::string ShellWord(const std::string& word);
 
 }  // namespace regrasp::hand

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/hand/scenario_file.h"
 #include "core/files/names.h"
 
 namespace regrasp::hand {
@@ -59,17 +60,22 @@ std::vector<std::string> Sheet::Remarks() const {
     remarks.push_back(
         fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
   const std::string_view few = FewFingers(best.model.hand.num_fingers());
-  if (!few.empty())
-    remarks.emplace_back(few);
-  else if (g.load_margin >= kOpposes &&
-           g.margin_without[static_cast<std::size_t>(g.opposing)] < kOpposes)
-    remarks.push_back(
-        fmt::format("without {} the others cannot hold {}: it will not be allowed to leave",
-                    best.model.hand.fingers[static_cast<std::size_t>(g.opposing)].name, held));
+  if (!few.empty()) remarks.emplace_back(few);
+  for (std::size_t f = 0; few.empty() && f < best.model.hand.fingers.size(); ++f)
+    if (g.load_margin >= kOpposes && g.margin_without[f] < kOpposes)
+      remarks.push_back(
+          fmt::format("without {} the others cannot hold {}: it will not be allowed to leave",
+                      best.model.hand.fingers[f].name, held));
   for (const Finger& finger : best.model.hand.fingers)
     if (finger.joints.size() < 3)
-      remarks.push_back(fmt::format("{} has {}: it holds, but cannot explore", finger.name,
-                                    DrivenJoints(finger)));
+      remarks.push_back(
+          fmt::format("{} has {}: it holds, but cannot explore or regrasp, so that "
+                      "the hand turns an object by one motion only",
+                      finger.name, DrivenJoints(finger)));
+  if (g.clearance < 0)
+    remarks.push_back(fmt::format(
+        "links of the hand overlap each other, or {}, by {:.1f} mm in the closed posture", held,
+        -1e3 * g.clearance));
   if (best.way.stuck >= 0)
     remarks.push_back(
         fmt::format("{} finds no straight way to its contact within its limits",
@@ -108,6 +114,7 @@ Answer Sheet::Tell() const {
   answer.json = {{"file", file.string()},
                  {"urdf", urdf.string()},
                  {"object", best.model.scenario.object},
+                 {"ball_file", ball_file.empty() ? Json() : Json(ball_file)},
                  {"seed", seed},
                  {"score", g.score},
                  {"load_margin_n", g.load_margin},
@@ -127,12 +134,16 @@ Answer Sheet::Tell() const {
       "stepper {}: {}",
       ShownText(file.string()), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap),
       table, Tried(), stepper, best.choice.reason);
+  if (!ball_file.empty())
+    answer.text +=
+        fmt::format("\n  {} beside it: a ball of {:g} mm and {:g} g", ShownText(ball_file),
+                    2e3 * best.model.object.radius, 1e3 * best.model.object.mass);
   for (const std::string& remark : remarks) answer.text += "\n  note: " + remark;
   answer.text +=
       best.trial.held
-          ? fmt::format("\n  next: regrasp up --hand {}", ShownText(file.string()))
+          ? fmt::format("\n  next: regrasp up --hand {}", ShownText(ShellWord(file.string())))
           : fmt::format("\n  next: regrasp hand new {} -o OTHER.toml with another --seed or {}",
-                        ShownText(urdf.string()), ball ? "--object-size" : "--object");
+                        ShownText(ShellWord(urdf.string())), ball ? "--object-size" : "--object");
   return answer;
 }
 

@@ -21,8 +21,9 @@ struct Sheet {
   std::vector<std::string> left_out;  ///< names of fingers
   ModelReport report;
   Found best;
-  bool ball = true;  ///< is what is held; otherwise an object that is laid into the grasp
-  int ways = 0;      ///< to lay it in, that were tried
+  bool ball = true;       ///< is what is held; otherwise an object that is laid into the grasp
+  std::string ball_file;  ///< of a ball of its own, beside the scenario; empty: it ships
+  int ways = 0;           ///< to lay it in, that were tried
 
   /// A comment for the scenario: what the grasp is worth.
   std::string ScoreLine() const;

@@ -1,5 +1,7 @@
 #include "cli/hand/trial.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -50,10 +52,13 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
   for (const auto end = session.tick() + std::llround(seconds / session.config().world.dt);
        session.tick() < end && grasped.held();)
     session.Tick();
-  trial.held = grasped.held();
-  trial.seeds = trial.held ? 1 : 0;
-  trial.end = trial.held ? "" : kDropped;
   trial.moved_m = (session.truth().p_WO - p).norm();
+  const bool slipped = grasped.held() && trial.moved_m > kHeldWithin;
+  trial.held = grasped.held() && !slipped;
+  trial.seeds = trial.held ? 1 : 0;
+  trial.end = trial.held ? ""
+              : slipped  ? fmt::format("the object slipped by {:.1f} mm", 1e3 * trial.moved_m)
+                         : kDropped;
   Frame frame;
   session.Snapshot(&frame, false);
   const bool none_leaves = model.hand.num_fingers() < kFewestToRegrasp;

@@ -35,6 +35,8 @@ struct HoldTrial {
   int seeds = 0;        ///< with which it held
 };
 
+inline constexpr double kHeldWithin = 0.010;  ///< an object that moves farther has slipped [m]
+
 /// Grasps the scenario's object at noise `paper` and holds it for `seconds`.
 HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t seed,
                     double seconds);

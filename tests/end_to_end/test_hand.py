@@ -4,6 +4,7 @@ import json
 import math
 import re
 import resource
+import shlex
 import signal
 import subprocess
 import unittest
@@ -234,7 +235,7 @@ class Hand(Case):
         turn = self.json("job", "list")["jobs"][-1]["id"]
         self.expect(0, "step", 100, "--wait")
         error = self.refused(5, "param", "set", "gait.step_rad", "0.05")
-        self.assertIn("gait.step_rad cannot be lowered while a hand of two or three fingers turns", error)
+        self.assertIn("gait.step_rad cannot be lowered while a hand whose fingers cannot regrasp turns", error)
         self.expect(0, "param", "set", "gait.step_rad", "0.4")  # more is no harm
         self.refused(5, "param", "reset", "gait")
         self.expect(0, "step", 9000, "--wait")
@@ -262,6 +263,27 @@ class Hand(Case):
         self.expect(0, "grasp", "--wait")
         status = self.json("status")
         self.assertEqual((status["state"], status["object"]), ("holding", "flat"))
+
+    def test_a_ball_of_a_size_that_does_not_ship_gets_a_file_of_its_own(self):
+        three = self.write("three fingers.urdf", hand(3))
+        done = self.regrasp("--json", "hand", "new", three, "-o", self.dir / "wide.toml", "--object-size", "57", "--inertia-from-shape")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        told = json.loads(done.stdout)
+        self.assertEqual((told["object"], told["ball_file"], told["held"]), ("wide_ball.urdf", "wide_ball.urdf", True))
+        ball = self.json("object", "show", self.dir / "wide_ball.urdf")
+        self.assertEqual((ball["shape"], ball["size_m"][0], ball["mass_kg"]), ("sphere", 0.057, 0.08))
+        # The command in its first line makes the same again, from where the scenario stands.
+        made = (self.dir / "wide.toml").read_text(encoding="utf-8")
+        words = shlex.split(made.splitlines()[0].removeprefix("# Made by: "))
+        self.assertEqual(words[:4], ["regrasp", "hand", "new", "three fingers.urdf"])
+        self.assertEqual(words[-1], "--inertia-from-shape")
+        self.assertIn("exists", self.refused(74, "hand", "new", three, "-o", self.dir / "wide.toml", "--object-size", "57"))
+        (self.dir / "wide.toml").unlink()
+        self.assertIn("wide_ball.urdf: exists", self.refused(74, "hand", "new", three, "-o", self.dir / "wide.toml", "--object-size", "57"))
+        (self.dir / "wide_ball.urdf").unlink()
+        again = subprocess.run([REGRASP, *words[1:]], env=environment(), cwd=self.dir, capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((self.dir / "wide.toml").read_text(encoding="utf-8"), made)
 
     def test_a_scenario_that_the_disk_has_no_room_for_leaves_nothing(self):
         def full():
