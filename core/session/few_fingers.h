@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a hand of two or three fingers cannot do.
+/// What a hand of two or three fingers, or with fingers of one or two driven joints, cannot do.
 
 #include "core/hand/hand_model.h"
 #include "core/session/command.h"
@@ -11,7 +11,9 @@ namespace regrasp {
 
 /// Refuses what needs a finger to leave where the others would be fewer than three: two contacts
 /// do not hold an object that turns about the line between them. That is every exploration, and a
-/// rotation by more than one motion of the gait (gait.step_rad).
+/// rotation by more than one motion of the gait (gait.step_rad). A fingertip that fewer than three
+/// driven joints move can neither slide nor land where it shall: that finger does not explore, and
+/// its hand does not regrasp.
 Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command);
 
 /// Refuses parameters `after` that would take from a job that runs with `before` what the rule

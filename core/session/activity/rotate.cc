@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "core/session/activity/explore.h"
+#include "core/session/completed.h"
 
 namespace regrasp {
 
@@ -29,10 +31,20 @@ ActivityStep RotateActivity::Update(const ActivityContext& context) {
   if (gait_.phase() == GaitPhase::kFailed) {
     step = ActivityStep::Failed(gait_.error());
   } else if (!gait_.active()) {
-    step = ActivityStep::Ended(gait_.stopped() ? JobState::kCancelled : JobState::kDone);
+    step = gait_.stopped() ? ActivityStep::Ended(JobState::kCancelled) : Done(context);
   }
   step.motion = motion;
   return step;
+}
+
+ActivityStep RotateActivity::Done(const ActivityContext& context) const {
+  const double turned = context.job.rotate.angle_rad, asked = gait_.target();
+  if (TurnedAsAsked(turned, asked)) return ActivityStep::Ended(JobState::kDone);
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  char error[sizeof(ActivityStep::error)];
+  std::snprintf(error, sizeof error, "the object has turned by %.1f instead of %.1f degrees",
+                kDegrees * turned, kDegrees * asked);
+  return ActivityStep::Failed(error);
 }
 
 ActivityStep RotateActivity::Stop(const ActivityContext&) {

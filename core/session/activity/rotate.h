@@ -25,6 +25,8 @@ class RotateActivity : public Activity {
  private:
   /// The truth about the rotation so far, every tick so that no turn is missed.
   void Assess(const ActivityContext& context) const;
+  /// The gait has ended by itself: failed where the object, judged, is not where it was to be.
+  ActivityStep Done(const ActivityContext& context) const;
 
   FingerGait gait_;
   GaitReport report_;

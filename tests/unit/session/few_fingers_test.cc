@@ -1,0 +1,47 @@
+#include "core/session/few_fingers.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/hand/scenario.h"
+
+namespace regrasp {
+namespace {
+
+class FewFingers : public ::testing::Test {
+ protected:
+  bool Allows(CommandType type, int finger, double angle_rad) const {
+    Command command;
+    command.type = type;
+    command.finger = finger;
+    command.angle_rad = angle_rad;
+    return CheckFingers(hand, parameters, command).kind == Verdict::Kind::kAllowed;
+  }
+  HandModel hand = LoadScenario("shadow", "", ModelSearchPath()).hand;
+  Parameters parameters;
+};
+
+TEST_F(FewFingers, AFingerOfTwoDrivenJointsDoesNotExplore) {
+  hand.fingers[1].joints.resize(2);
+  EXPECT_FALSE(Allows(CommandType::kExplore, 1, 0));
+  EXPECT_TRUE(Allows(CommandType::kExplore, 0, 0));
+}
+
+TEST_F(FewFingers, AHandWithSuchAFingerTurnsAnObjectByOneMotionOnly) {
+  EXPECT_TRUE(Allows(CommandType::kRotate, -1, 1));
+  hand.fingers[1].joints.resize(2);
+  EXPECT_FALSE(Allows(CommandType::kRotate, -1, 1));
+  EXPECT_TRUE(Allows(CommandType::kRotate, -1, parameters.gait.step_rad));
+  EXPECT_TRUE(Allows(CommandType::kGrasp, -1, 0));
+}
+
+TEST_F(FewFingers, OfThreeFingersNoneExplores) {
+  hand.fingers.resize(3);
+  EXPECT_FALSE(Allows(CommandType::kExplore, 0, 0));
+  EXPECT_FALSE(Allows(CommandType::kRotate, -1, -1));
+  EXPECT_TRUE(Allows(CommandType::kRotate, -1, -parameters.gait.step_rad));
+}
+
+}  // namespace
+}  // namespace regrasp
