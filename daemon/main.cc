@@ -134,7 +134,8 @@ void AddFlags(CLI::App& app, Flags& f) {
                "stop when standard input ends: with the program that holds its other end");
   app.add_option("--bench", f.bench_s,
                  "measure ticks for so long in each state, print JSON, then exit")
-      ->type_name("S");
+      ->type_name("S")
+      ->check(CLI::Range(0.01, 3600.0));
   app.add_flag("--version", f.version, "print the version, then exit");
 }
 
@@ -221,11 +222,13 @@ int Main(int argc, char** argv) {
     const auto source = [given = Given(app, flags)] { return ResolveConfig(given); };
     const DaemonConfig config = source();
     if (flags.print_config) return Print(ConfigJson(config) + "\n");
-    if (flags.bench_s > 0) return Print(Benchmark(config, flags.bench_s) + "\n");
+    if (flags.bench_s != 0) return Print(Benchmark(config, flags.bench_s) + "\n");
     if (!flags.check) return Serve(config, source, flags.until_eof);
     for (const std::string& warning : CheckModels(config))
       fmt::print(stderr, "regraspd: warning: {}\n", warning);
     return Print("configuration ok\n");
+  } catch (const ConfigNotFound& e) {
+    return FailShown(e.what(), "regraspd --print-default-config", ExitCode::kNotFound);
   } catch (const ConfigError& e) {
     return FailShown(e.what(), "regraspd --print-default-config", ExitCode::kUsage);
   } catch (const ModelError& e) {

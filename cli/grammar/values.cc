@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <utility>
 
 #include "cli/client/errors.h"
@@ -22,12 +25,21 @@ void CheckRange(const Arg& arg, double typed) {
   const bool named =
       !arg.unit.empty() || arg.scale != 1 || arg.metavar == "S" || arg.metavar == "HZ";
   const std::string unit = named ? " " + (arg.unit.empty() ? arg.metavar : arg.unit) : "";
-  const std::string least = LimitText(arg.min / arg.scale);
+  const std::string least = LeastText(arg.min / arg.scale);
   throw CliError(kUsage, arg.max >= 1e299
                              ? fmt::format("{} {}: allowed are {}{} and more", ArgName(arg), typed,
                                            least, unit)
                              : fmt::format("{} {}: allowed are {} to {}{}", ArgName(arg), typed,
-                                           least, LimitText(arg.max / arg.scale), unit));
+                                           least, MostText(arg.max / arg.scale), unit));
+}
+
+/// Whether these digits are an integer of at most 2^53 in magnitude.
+bool IsExact(const std::string& text) {
+  constexpr auto kMost = static_cast<std::int64_t>(kMaxSafeInteger);
+  std::int64_t value = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && rest == text.data() + text.size() && value <= kMost &&
+         value >= -kMost;
 }
 
 /// Of a bare number: the key on the wire tells it, or the word that stands for the value.
@@ -66,9 +78,13 @@ Json ToWire(const Arg& arg, const std::string& text, const std::string& scope) {
     }
     case ArgKind::kInteger: {
       const double typed = ParseNumber(text, name);
-      if (typed != std::floor(typed) || std::abs(typed) > kMaxSafeInteger) {
+      if (typed != std::floor(typed))
         throw CliError(kUsage, fmt::format("{}: '{}' is not an integer", name, text));
-      }
+      // Beyond 2^53 a double is the nearest even integer, which nobody has typed.
+      if (std::abs(typed) >= kMaxSafeInteger && !IsExact(text))
+        throw CliError(kUsage, fmt::format("{} {}: allowed are {} to {}", name, text,
+                                           LeastText(std::max(arg.min, -kMaxSafeInteger)),
+                                           MostText(std::min(arg.max, kMaxSafeInteger))));
       CheckRange(arg, typed);
       return static_cast<std::int64_t>(typed);
     }

@@ -111,9 +111,9 @@ std::string MeaningOf(const Arg& arg) {
   if (!arg.values.empty()) text += fmt::format(": {}", fmt::join(arg.values, ", "));
   if (arg.kind != ArgKind::kText && arg.kind != ArgKind::kFlag && arg.max < 1e299) {
     text +=
-        fmt::format("; {} to {}", LimitText(arg.min / arg.scale), LimitText(arg.max / arg.scale));
+        fmt::format("; {} to {}", LeastText(arg.min / arg.scale), MostText(arg.max / arg.scale));
   }
-  if (!arg.default_text.empty()) text += fmt::format(" (default: {})", arg.default_text);
+  if (!arg.default_text.empty() && !arg.required) text += fmt::format(" (default: {})", arg.default_text);
   return text;
 }
 

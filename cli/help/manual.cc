@@ -91,6 +91,12 @@ constexpr const char* kEnd = R"(# ENVIRONMENT
 *REGRASP\_CONFIG*
 	The configuration file, instead of the usual ones.
 
+*REGRASP\_MODELS\_DIR*
+	Hands, objects and scenarios are looked for here first.
+
+*REGRASP\_GRAPHICS*
+	How *plot --show* draws in the terminal: _auto_ (also when it is not set), _kitty_, _sixel_, _blocks_ or _dots_.
+
 *NO\_COLOR*
 	No colour, when it is not empty.
 

@@ -167,6 +167,8 @@ Json Value(const ConfigKey& key, const DaemonConfig& config) {
 }  // namespace
 
 void ReadConfigFile(const std::string& path, DaemonConfig* config) {
+  if (::access(path.c_str(), F_OK) != 0)
+    throw ConfigNotFound(fmt::format("{}: no such file", path));
   if (::access(path.c_str(), R_OK) != 0) throw ConfigError(fmt::format("{}: cannot be read", path));
   std::string text;
   try {

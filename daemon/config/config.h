@@ -27,6 +27,12 @@ class ConfigError : public std::runtime_error {
   explicit ConfigError(const ProblemList& problems) : std::runtime_error(problems.Text()) {}
 };
 
+/// There is no such configuration file.
+class ConfigNotFound : public ConfigError {
+ public:
+  using ConfigError::ConfigError;
+};
+
 struct DaemonConfig {
   std::string socket;      ///< "": by rule, see core/protocol/socket_path.h
   std::string output_dir;  ///< "": by rule, see DefaultOutputDir()

@@ -134,9 +134,10 @@ void SetKey(DaemonConfig* config, const ConfigKey& key, const std::string& text,
     std::int64_t value = 0;
     const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = error == std::errc() && rest == text.data() + text.size();
-    if (!whole || static_cast<double>(value) < key.min || static_cast<double>(value) > key.max)
+    if (!whole || value < static_cast<std::int64_t>(key.min) ||
+        value > static_cast<std::int64_t>(key.max))
       throw ConfigError(fmt::format("{}{} = {}: expected an integer, {} ... {}", where, key.name,
-                                    text, LimitText(key.min), LimitText(key.max)));
+                                    text, LeastText(key.min), MostText(key.max)));
   }
   const std::string before = key.get(*config);
   key.set(*config, text);
