@@ -92,6 +92,9 @@ void PrintNoise(Output& out, const Json& noise) {
                         const char* unit) {
     if (At(noise, key).is_number() && At(noise, key) != 0.0) line(what, key, digits, scale, unit);
   };
+  more("taxels apart", "taxel_pitch_m", 1, 1e3, "mm");
+  more("pose rate", "object_rate_hz", 0, 1, "Hz");
+  more("pose delay", "object_delay_frames", 0, 1, "poses");
   more("position bias", "position_bias_m", 2, 1e3, "mm");
   more("force bias", "force_bias_n", 3, 1, "N");
   more("joint bias", "joint_bias_rad", 2, kDegrees, "deg");
@@ -99,7 +102,7 @@ void PrintNoise(Output& out, const Json& noise) {
   more("position drift", "position_drift_m", 2, 1e3, "mm after 1 s");
   more("force drift", "force_drift_n", 3, 1, "N after 1 s");
   more("object drift", "object_drift_m", 2, 1e3, "mm after 1 s");
-  more("dropout_fraction", "dropout_fraction", 1, 100, "%");
+  more("lost readings", "dropout_fraction", 1, 100, "%");
   more("length of a gap", "dropout_gap_s", 3, 1, "s");
   more("latency", "latency_s", 1, 1e3, "ms");
 }

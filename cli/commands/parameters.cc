@@ -22,8 +22,9 @@ namespace {
 
 constexpr const char* kGroup = "Control";
 
-/// As `param set` takes it: without quotes and brackets.
+/// As `param set` takes it: without quotes and brackets, true or false.
 std::string Typed(const Json& value) {
+  if (value.is_boolean()) return value.dump();
   if (!value.is_array()) return Plain(value);
   std::string text;
   for (const Json& item : value) text += (text.empty() ? "" : ",") + Plain(item);

@@ -18,7 +18,7 @@ class GraspSequence {
     kGrip,   ///< all hold, caps ramp from waiting force to grip; the stand-in still holds
     kAlone,  ///< the stand-in has let go; settling
     kDone,
-    kFailed,  ///< fewer than three fingers touched
+    kFailed,  ///< fewer than three fingers touched, of fewer than three not all
   };
 
   void Start(const Estimate& estimate);

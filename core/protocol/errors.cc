@@ -31,8 +31,10 @@ constexpr std::array kErrors = {
     ErrorInfo{ErrorCode::kIo, "I/O error", ExitCode::kIo, "a file could not be read or written"},
     ErrorInfo{ErrorCode::kTooManyClients, "too many clients", ExitCode::kRefused,
               "the connection is closed after this error"},
-    ErrorInfo{ErrorCode::kTooLarge, "too large", ExitCode::kProtocol,
-              "the request line is over 64 KiB; the connection is closed after this error"},
+    ErrorInfo{
+        ErrorCode::kTooLarge, "too large", ExitCode::kProtocol,
+        "the request line is over 64 KiB: the connection is closed after this error; or the answer "
+        "would be too long: it stays"},
     ErrorInfo{ErrorCode::kProtocolVersion, "protocol version", ExitCode::kProtocol,
               "client and daemon share no protocol version"},
 };

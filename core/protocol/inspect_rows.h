@@ -129,13 +129,15 @@ inline constexpr std::array kInspectRows = {
         {},
         false,
         "tick, time_s, joints: [{name, finger, angle_rad, torque_nm, lower_rad, upper_rad}]"},
-    MethodSpec{"quality", "quality", "quality of the grasp", kQuality, false,
-               "tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, "
-               "measures: [NAME] and the value of each by its name, torque_scale_m "
-               "(mean distance of the contacts from the object's centre; torques are divided by "
-               "it), fingers: {NAME: {manipulability, load_margin_without_n, "
-               "joint_limit_margin_rad}}; measures "
-               "and margins are null while no finger that holds is in contact"},
+    MethodSpec{
+        "quality", "quality", "quality of the grasp", kQuality, false,
+        "tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, "
+        "measures: [NAME] and the value of each by its name, torque_scale_m "
+        "(mean distance of the contacts from the object's centre; torques are divided by "
+        "it), fingers: {NAME: {manipulability, load_margin_without_n, "
+        "joint_limit_margin_rad}}, exploration (null, or of the one that runs: finger, criterion, "
+        "cycle, phi, gradient_norm_1_m, gradient_threshold_1_m); measures "
+        "and margins are null while no finger that holds is in contact"},
     MethodSpec{"shape", "shape", "the object's surface as the fingers have felt it", kShape, false,
                "tick, time_s, object, touched_fraction (of all directions), touched_cells, cells, "
                "mean_radius_m, truth (for judging; null before anything was felt well: cells, "
@@ -171,7 +173,9 @@ inline constexpr std::array kInspectRows = {
                {},
                false,
                "tick, time_s, object {p_WO_m, q_WO_wxyz, v_m_s, w_rad_s, mass_kg, friction}, "
-               "contacts [{link, finger, p_WC_m, normal_W, force_W_n, depth_m}], gravity_W_m_s2"},
+               "contacts [{link, finger, p_WC_m, normal_W, force_W_n, depth_m}], "
+               "fingers: {NAME: {in_contact, manipulability, p_WC_m, p_WF_m (of the fingertip)}}, "
+               "gravity_W_m_s2, stand_in (it holds the object before the fingers do)"},
     MethodSpec{"unsubscribe", "call unsubscribe", "end a subscription", kUnsubscribe, false,
                "sub, seq, dropped"},
     MethodSpec{"version", "version", "version of the daemon", {}, false, "version, protocol"},

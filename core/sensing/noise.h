@@ -1,8 +1,9 @@
 #pragma once
 
 /// Noise levels of the sensors and their presets: white noise at 1 kHz, and what real sensors have
-/// beside it (0 in every preset). The paper gives no numbers ("standard deviations following the
-/// real tactile sensor"): these presets are ours.
+/// beside it (0 in every preset, but for what makes `taxel`: taxels, rate and delay of the pose).
+/// The paper gives no numbers ("standard deviations following the real tactile sensor"): these
+/// presets are ours.
 
 #include <optional>
 #include <span>

@@ -126,7 +126,7 @@ std::string AllowedText(const ParameterInfo& info) {
     }
     return text;
   }
-  std::string text = LimitText(info.min) + " ... " + LimitText(info.max);
+  std::string text = LeastText(info.min) + " ... " + MostText(info.max);
   if (!info.unit.empty()) text += " " + std::string(info.unit);
   if (info.type == ParameterType::kInteger) return "an integer, " + text;
   return info.type == ParameterType::kVector ? "3 numbers, each " + text : text;

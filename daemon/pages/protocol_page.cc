@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <cctype>
+#include <string_view>
 
 #include "core/common/limit_text.h"
 #include "core/exploration/criterion.h"
@@ -62,11 +63,16 @@ for line in s.makefile():
 
 )";
 
+const char* Article(std::string_view noun) {
+  return std::string_view("aeiou").find(noun.front()) == std::string_view::npos ? "a" : "an";
+}
+
 std::string Limits(const ParamSpec& spec) {
   const bool low = spec.min > -1e299, high = spec.max < 1e299;
   if (!spec.values.empty()) return fmt::format("`{}`", fmt::join(spec.values, "`, `"));
-  if (spec.names != NameSource::kNone) return fmt::format("a {} name", Name(spec.names));
-  if (low && high) return fmt::format("{} ... {}", LimitText(spec.min), LimitText(spec.max));
+  if (spec.names != NameSource::kNone)
+    return fmt::format("the name of {} {}", Article(Name(spec.names)), Name(spec.names));
+  if (low && high) return fmt::format("{} ... {}", LeastText(spec.min), MostText(spec.max));
   return {};
 }
 
@@ -97,11 +103,10 @@ std::string ParameterSection() {
   const Parameters defaults;
   for (const ParameterInfo& info : ParameterTable()) {
     const std::string allowed =
-        info.words.empty()
-            ? info.type == ParameterType::kBoolean
-                  ? "`true`, `false`"
-                  : fmt::format("{} ... {}", LimitText(info.min), LimitText(info.max))
-            : fmt::format("`{}`", fmt::join(info.words, "`, `"));
+        info.words.empty() ? info.type == ParameterType::kBoolean
+                                 ? "`true`, `false`"
+                                 : fmt::format("{} ... {}", LeastText(info.min), MostText(info.max))
+                           : fmt::format("`{}`", fmt::join(info.words, "`, `"));
     text += fmt::format("| `{}` | {} | {} | {} | {} | {} | {} |\n", info.name, Name(info.type),
                         info.unit, allowed, ParameterText(info, info.get(defaults)), info.meaning,
                         info.source);
@@ -141,7 +146,7 @@ std::string ProtocolPage() {
       "`id, method, state` (`queued`, `running`, `done`, `failed`, `cancelled`)`, error, progress` "
       "(0 ... 1)`, "
       "start_tick, end_tick, started_s, ended_s` (the same moments in simulated seconds)`, "
-      "finished`, "
+      "finished, incident` (the record of a drop in it, or null)`, "
       "and what its method says above.\n\n";
   page += ParameterSection() + MeasureSection();
   page += "## Fields of run files\n\n" + RunFieldTable() + "\n";
