@@ -24,8 +24,7 @@ constexpr double kMostSeeds = 1e6;
 double PrintedWidth(const std::string& size) {
   const double width_mm = ParseQuantity(size, "--size", "mm");
   if (width_mm < 50 || width_mm > 1000)
-    throw CliError(kUsage, fmt::format("--size {}: allowed are 50 to 1000 mm", size),
-                   "regrasp help experiment exploration");
+    throw CliError(kUsage, fmt::format("--size {}: allowed are 50 to 1000 mm", size));
   return width_mm;
 }
 
@@ -158,7 +157,8 @@ std::vector<Arg> With(std::vector<Arg> args, const char* seeds, const char* nois
                kMostSeeds, seeds),
         TextArg("object", "--object", "NAME|FILE", "the object", "the scenario's"),
         Number("tilt", "--tilt", ArgKind::kNumber, "DEG",
-               "tilt of the hand: 0 palm up, 90 fingers down", -180, 180, "the scenario's"),
+               "tilt of the hand: 0 palm up, 90 fingers down", -kMostTilt_deg, kMostTilt_deg,
+               "the scenario's"),
         TextArg("hand", "--hand", "NAME|FILE", "the hand", "shadow"), set, cases, stepper,
         TextArg("models-dir", "--models-dir", "DIR", "where models are looked for first"),
         Number("workers", "--workers", ArgKind::kInteger, "N",
@@ -207,13 +207,15 @@ std::vector<CommandSpec> ExperimentCommands() {
       {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
        With({TextArg("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
                      "0,0,-1"),
-             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
-             Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns", -360000,
-                    360000, "not used"),
+             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -kMostTurns,
+                    kMostTurns, "1"),
+             Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns",
+                    -360 * kMostTurns, 360 * kMostTurns, "not used"),
              Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
                     "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
              Number("push", "--push", ArgKind::kNumber, "N",
-                    "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
+                    "push the object each second, for 0.1 s, in a random direction", 0, kMostPush_n,
+                    "0")},
             "10", "paper"),
        Experiment},
       {"experiment zoo", kGroup,
@@ -227,11 +229,13 @@ std::vector<CommandSpec> ExperimentCommands() {
                 "others are compared with",
                 "planned,returning"),
             TextArg("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
-            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1"),
+            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -kMostTurns,
+                   kMostTurns, "1"),
             Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
             Number("push", "--push", ArgKind::kNumber, "N",
-                   "push the object each second, for 0.1 s, in a random direction", 0, 100, "0")},
+                   "push the object each second, for 0.1 s, in a random direction", 0, kMostPush_n,
+                   "0")},
            "5", "paper")),
        Experiment},
       {"experiment prediction", kGroup,
@@ -241,7 +245,8 @@ std::vector<CommandSpec> ExperimentCommands() {
                     "separated by commas, each as it is, pushed and slippery; zoo: all of it",
                     "twelve bodies of all kinds"),
             TextArg("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
-            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -1000, 1000, "1")},
+            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -kMostTurns,
+                   kMostTurns, "1")},
            "2", "paper,coarse")),
        Experiment},
       {"experiment noise-sweep", kGroup,

@@ -29,6 +29,16 @@ void AddIdentity(const Json& identity, std::size_t which, Plan* plan) {
   }
 }
 
+/// The error for a `name` that `flag` does not know; `whole` stands for all names.
+CliError NoneOf(const Plan& plan, const char* flag, const std::string& name,
+                const std::vector<std::string>& known, const char* whole) {
+  const std::string_view nearest = NearestName(name, known);
+  return {kUsage,
+          fmt::format("{} '{}' is none of {}, {}", flag, name, fmt::join(known, ", "), whole),
+          fmt::format("regrasp experiment {} {} {} -o DIR", plan.experiment, flag,
+                      nearest.empty() ? whole : nearest)};
+}
+
 /// The objects of a zoo by name, and its cases. Throws CliError(kUsage) where one is unknown.
 void AddZoo(SteppedDaemon* daemon, Plan* plan) {
   const Json reset = daemon->Call("describe", {{"method", "reset"}}).at("methods").at(0);
@@ -36,17 +46,14 @@ void AddZoo(SteppedDaemon* daemon, Plan* plan) {
   for (const Json& parameter : reset.at("params"))
     if (parameter.at("name") == "object")
       known = parameter.at("values").get<std::vector<std::string>>();
-  if (plan->objects == std::vector<std::string>{"zoo"}) {
+  if (plan->objects == std::vector<std::string>{kWholeZoo}) {
     plan->objects.clear();
     std::copy_if(known.begin(), known.end(), std::back_inserter(plan->objects),
                  [](const std::string& name) { return name.starts_with("zoo_"); });
   }
   for (const std::string& name : plan->objects)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw CliError(kUsage,
-                     fmt::format("--objects '{}' is none of {}, zoo", name, fmt::join(known, ", ")),
-                     fmt::format("regrasp experiment {} --objects {} -o DIR", plan->experiment,
-                                 NearestName(name, known)));
+      throw NoneOf(*plan, "--objects", name, known, kWholeZoo);
   plan->experiment == "zoo" ? ExpandZoo(plan) : ExpandHazards(plan);
 }
 
@@ -85,18 +92,13 @@ void CompletePlan(Plan* plan) {
   const Json contacts = daemon.Call("contacts");
   for (const auto& [name, finger] : Named(contacts.at("fingers"), "finger"))
     fingers.push_back(name);
-  if (plan->subjects == std::vector<std::string>{"all"}) {
+  if (plan->subjects == std::vector<std::string>{kEveryFinger}) {
     plan->subjects = fingers;
     return;
   }
-  for (const auto& name : plan->subjects) {
-    if (std::find(fingers.begin(), fingers.end(), name) != fingers.end()) continue;
-    const auto nearest = NearestName(name, fingers);
-    throw CliError(kUsage,
-                   fmt::format("--finger '{}' is none of {}, all", name, fmt::join(fingers, ", ")),
-                   fmt::format("regrasp experiment {} --finger {} -o DIR", plan->experiment,
-                               nearest.empty() ? "all" : nearest));
-  }
+  for (const auto& name : plan->subjects)
+    if (std::find(fingers.begin(), fingers.end(), name) == fingers.end())
+      throw NoneOf(*plan, "--finger", name, fingers, kEveryFinger);
 }
 
 Json RunExperiment(Context& context, const Plan& plan, int workers,

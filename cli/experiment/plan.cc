@@ -45,7 +45,7 @@ std::string Plan::Command(const Unit& unit, const std::string& estimator) const 
   for (const auto& [flag, value] : {std::pair{"hand", hand}, std::pair{"object", common.object}})
     if (!value.empty()) text += fmt::format(" --{} {}", flag, value);
   if (common.tilt_deg) text += fmt::format(" --tilt {}", *common.tilt_deg);
-  if (common.push_n > 0) text += fmt::format(" --push {}", common.push_n);
+  if (common.push_n > 0) text += fmt::format(" --push {}", *common.push_n);
   for (const auto& [name, value] : common.set) text += fmt::format(" --set {}={}", name, value);
   if (stepper != "fast") text += " --stepper " + stepper;
   if (!cases.empty()) text += fmt::format(" --case '{}'", Text(cases.at(unit.which)));

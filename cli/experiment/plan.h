@@ -86,11 +86,15 @@ Plan PlanFromJson(const Json& json, const std::string& path);
 std::string Difference(const Plan& before, const Plan& now);
 
 /// Makes cases of the values of every `--set NAME=A,B,...` but those of vectors: those are for
-/// which `is_vector` returns true. Throws CliError(kUsage).
+/// which `is_vector` returns true. Throws CliError(kUsage), also where a case gives the same
+/// parameter.
 void ExpandSweeps(Plan* plan, const std::function<bool(const std::string& parameter)>& is_vector);
 
 /// Makes the cases of a zoo: every object with every gait, each gait compared with the first.
 void ExpandZoo(Plan* plan);
+
+inline constexpr const char* kWholeZoo = "zoo";     ///< of --objects
+inline constexpr const char* kEveryFinger = "all";  ///< of --finger
 
 /// What a prediction looks at unless told: bodies of all kinds.
 inline constexpr const char* kPredictionObjects =

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -19,7 +21,7 @@ namespace fs = std::filesystem;
 /// Names separated by commas, each one of `allowed`, in the order of `allowed`.
 std::vector<std::string> Names(const std::string& text, const std::vector<std::string>& allowed,
                                const std::string& flag) {
-  const auto given = Split(text, ',');
+  const auto given = NamesIn(text, flag);
   for (const auto& name : given)
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
       throw CliError(kUsage,
@@ -27,7 +29,6 @@ std::vector<std::string> Names(const std::string& text, const std::vector<std::s
   std::vector<std::string> names;
   for (const auto& name : allowed)
     if (std::find(given.begin(), given.end(), name) != given.end()) names.push_back(name);
-  if (names.empty()) throw CliError(kUsage, fmt::format("{} is empty", flag));
   return names;
 }
 
@@ -36,23 +37,52 @@ std::vector<std::string> ValuesOf(const char* method, const char* parameter) {
   return {spec->values.begin(), spec->values.end()};
 }
 
-std::vector<std::string> Axes(const std::string& text) {
+std::vector<std::string> Axes(const std::string& text, const std::string& experiment) {
   if (text == "all") return {"1,0,0", "-1,0,0", "0,1,0", "0,-1,0", "0,0,1", "0,0,-1"};
   const auto v = ParseNumbers(text, 3, "--axis");
+  const std::string hint = fmt::format("regrasp experiment {} --axis=0,0,-1 -o DIR", experiment);
   if (v[0] == 0 && v[1] == 0 && v[2] == 0)
-    throw CliError(kUsage, "--axis 0,0,0 has no direction",
-                   "regrasp experiment rotation --axis 0,0,-1 -o DIR");
+    throw CliError(kUsage, "--axis 0,0,0 has no direction", hint);
+  const double most = FindParam(*FindMethod("rotate"), "axis")->max;
+  if (std::any_of(v.begin(), v.end(), [most](double x) { return std::abs(x) > most; }))
+    throw CliError(kUsage, fmt::format("--axis {}: allowed are {} to {}", text, -most, most), hint);
   return {fmt::format("{},{},{}", v[0], v[1], v[2])};
 }
 
-/// Throws CliError(kUsage) when a parameter is given twice.
-void CheckGivenOnce(const Setting& setting, const std::string& where) {
+/// Options that are parameters, too: {parameter: option}, of those that were given.
+std::map<std::string, std::string> OptionsThatAreParameters(const std::string& experiment,
+                                                            const Invocation& invocation) {
+  std::map<std::string, std::string> options;
+  if (invocation.Has("speed")) options["gait.speed_rad_s"] = "--speed";
+  if (experiment == "zoo") options["gait.preset"] = options["gait.mode"] = "--gaits";
+  return options;
+}
+
+/// Throws CliError(kUsage) when a parameter is given twice, by an option or by name.
+void CheckGivenOnce(const Setting& setting, const std::string& where,
+                    const std::map<std::string, std::string>& options) {
   std::set<std::string> names;
   if (setting.tilt_deg) names.insert("gravity");  // a tilt is one
-  for (const auto& [name, value] : setting.set)
+  for (const auto& [name, value] : setting.set) {
+    if (const auto option = options.find(name); option != options.end())
+      throw CliError(kUsage, fmt::format("{}: {} is given by {}, too", where, name, option->second),
+                     fmt::format("give {} once", name));
     if (!names.insert(name).second)
       throw CliError(kUsage, fmt::format("{}: {} is given twice", where, name),
                      fmt::format("give {} once", name));
+  }
+}
+
+/// Throws CliError(kUsage) when a case says what its experiment has not, or what nothing allows.
+void CheckCase(const Case& c, const Plan& plan, const std::string& where) {
+  if ((c.setting.push_n || c.setting.turns) && !plan.rotation())
+    throw CliError(kUsage, where + ": push and turns are for rotations");
+  if (c.setting.turns == 0.0) throw CliError(kUsage, where + ": 0 turns leave nothing to turn");
+  if (c.setting.criterion.empty()) return;
+  if (plan.rotation()) throw CliError(kUsage, where + ": a criterion is for explorations");
+  if (Names(c.setting.criterion, ValuesOf("explore", "criterion"), where + ": criterion").size() >
+      1)
+    throw CliError(kUsage, where + ": a case has one criterion");
 }
 
 std::int64_t Integer(const Invocation& invocation, const char* key, const char* otherwise) {
@@ -79,24 +109,25 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
                     : p.rotation() ? "10"
                     : sweep        ? "20"
                                    : "50");
-  if (prediction) p.objects = Split(invocation.Text("objects", kPredictionObjects), ',');
+  if (prediction || zoo)
+    p.objects = NamesIn(invocation.Text("objects", zoo ? kWholeZoo : kPredictionObjects),
+                        "--objects", kWholeZoo);
   if (zoo) {
-    p.objects = Split(invocation.Text("objects", "zoo"), ',');
     p.gaits = Names(invocation.Text("gaits", "planned,returning"),
                     {"planned", "returning", "exploring"}, "--gaits");
   }
   if (p.rotation()) {
-    p.subjects = Axes(invocation.Text("axis", "0,0,-1"));
+    p.subjects = Axes(invocation.Text("axis", "0,0,-1"), experiment);
     if (invocation.Has("turns") && invocation.Has("angle"))
       throw CliError(kUsage, "--turns and --angle exclude each other");
     p.turns = invocation.Has("angle") ? ParseNumber(invocation.Text("angle"), "--angle") / 360
                                       : ParseNumber(invocation.Text("turns", "1"), "--turns");
     if (p.turns == 0)
       throw CliError(kUsage, "an angle of 0 leaves nothing to turn",
-                     "regrasp experiment rotation --turns 1 -o DIR");
+                     fmt::format("regrasp experiment {} --turns 1 -o DIR", experiment));
     p.speed_deg_s = ParseNumber(invocation.Text("speed", "0"), "--speed");
   } else {
-    p.subjects = Split(invocation.Text("finger", "all"), ',');
+    p.subjects = NamesIn(invocation.Text("finger", kEveryFinger), "--finger", kEveryFinger);
     const auto estimators = ValuesOf("explore", "estimator");
     p.estimators =
         Names(invocation.Text("estimator", sweep ? fmt::format("{}", fmt::join(estimators, ","))
@@ -110,25 +141,17 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
   if (invocation.Has("models-dir"))
     p.models_dir = fs::absolute(invocation.Text("models-dir")).string();
   if (invocation.Has("tilt")) p.common.tilt_deg = ParseNumber(invocation.Text("tilt"), "--tilt");
-  p.common.push_n = ParseNumber(invocation.Text("push", "0"), "--push");
+  if (invocation.Has("push")) p.common.push_n = ParseNumber(invocation.Text("push"), "--push");
   for (const auto& word : Split(invocation.Text("set"), '\n'))
     p.common.set.push_back(NameAndValue(word, "--set"));
-  CheckGivenOnce(p.common, "--set");
+  const auto options = OptionsThatAreParameters(experiment, invocation);
+  CheckGivenOnce(p.common, "--set", options);
   p.stepper = invocation.Text("stepper", "fast");
   for (const auto& text : Split(invocation.Text("case"), '\n')) {
     p.cases.push_back(ParseCase(text));
     const Case& c = p.cases.back();
-    CheckGivenOnce(c.setting, fmt::format("--case '{}'", text));
-    if ((c.setting.push_n != 0 || c.setting.turns) && !p.rotation())
-      throw CliError(kUsage, fmt::format("--case '{}': push and turns are for rotations", text));
-    if (!c.setting.criterion.empty()) {
-      if (p.rotation())
-        throw CliError(kUsage, fmt::format("--case '{}': a criterion is for explorations", text));
-      Names(c.setting.criterion, ValuesOf("explore", "criterion"),
-            fmt::format("--case '{}': criterion", text));
-    }
-    if (c.setting.turns == 0.0)
-      throw CliError(kUsage, fmt::format("--case '{}': 0 turns leave nothing to turn", text));
+    CheckGivenOnce(c.setting, fmt::format("--case '{}'", text), options);
+    CheckCase(c, p, fmt::format("--case '{}'", text));
     if (std::count_if(p.cases.begin(), p.cases.end(),
                       [&](const Case& other) { return other.name == c.name; }) > 1)
       throw CliError(kUsage, fmt::format("two cases have the name '{}'", c.name));

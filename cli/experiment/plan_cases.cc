@@ -29,6 +29,11 @@ void ExpandSweeps(Plan* plan, const std::function<bool(const std::string&)>& is_
       throw CliError(kUsage,
                      fmt::format("--set {}={}: a value is empty or given twice", name, value),
                      fmt::format("regrasp param get {}", name));
+    for (const Case& c : plan->cases)
+      for (const auto& [own, ignored] : c.setting.set)
+        if (own == name)
+          throw CliError(kUsage, fmt::format("--set {}={}: the case '{}' gives {}, too", name,
+                                             value, c.name, name));
     plan->cases = Sweep(plan->cases, name, values);
   }
   plan->common.set = fixed;

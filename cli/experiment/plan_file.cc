@@ -46,7 +46,7 @@ Json ToJson(const Plan& p) {
   json["hand"] = p.hand;
   json["object"] = p.common.object;
   if (p.common.tilt_deg) json["tilt_deg"] = *p.common.tilt_deg;
-  if (p.common.push_n > 0) json["push_n"] = p.common.push_n;
+  if (p.common.push_n > 0) json["push_n"] = *p.common.push_n;
   json["set"] = set;
   for (const Case& c : p.cases) json["cases"].push_back(Text(c));
   for (const Case& c : p.cases)
@@ -80,7 +80,7 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
     p.hand = json.at("hand");
     p.common.object = json.at("object");
     if (json.contains("tilt_deg")) p.common.tilt_deg = json.at("tilt_deg").get<double>();
-    p.common.push_n = json.value("push_n", 0.0);
+    if (json.contains("push_n")) p.common.push_n = json.at("push_n").get<double>();
     for (const auto& [name, value] : json.at("set").items()) p.common.set.emplace_back(name, value);
     if (json.contains("cases"))
       for (const std::string text : json.at("cases")) p.cases.push_back(ParseCase(text));

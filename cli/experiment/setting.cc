@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <set>
 #include <sstream>
 
 #include "cli/client/errors.h"
@@ -16,6 +17,34 @@ namespace regrasp::cli {
 namespace {
 
 constexpr double kGravity = 9.81;  // [m/s2], as in the scenario
+constexpr const char* kGravityName = "gravity";
+
+/// A number of a case, between `least` and `most`.
+double Limited(const std::string& key, const std::string& value, const char* unit, double least,
+               double most) {
+  const std::string what = "--case " + key;
+  const double number = *unit != '\0' ? ParseQuantity(value, what, unit) : ParseNumber(value, what);
+  if (number < least || number > most)
+    throw CliError(kUsage, fmt::format("{} {}: allowed are {} to {}{}{}", what, value, least, most,
+                                       *unit != '\0' ? " " : "", unit));
+  return number;
+}
+
+void Add(const std::string& key, const std::string& value, Setting* setting) {
+  if (value.empty()) throw CliError(kUsage, fmt::format("--case {}= has no value", key));
+  if (key == "object")
+    setting->object = ModelName(value);
+  else if (key == "tilt")
+    setting->tilt_deg = Limited(key, value, "deg", -kMostTilt_deg, kMostTilt_deg);
+  else if (key == "push")
+    setting->push_n = Limited(key, value, "N", 0, kMostPush_n);
+  else if (key == "turns")
+    setting->turns = Limited(key, value, "", -kMostTurns, kMostTurns);
+  else if (key == "criterion")
+    setting->criterion = value;
+  else
+    setting->set.emplace_back(key, value);
+}
 
 }  // namespace
 
@@ -36,23 +65,14 @@ Case ParseCase(const std::string& text) {
   const auto colon = text.find(':');
   c.name = text.substr(0, colon);
   if (c.name.empty() || c.name.find_first_of("'\n") != std::string::npos)
-    throw CliError(kUsage, fmt::format("--case '{}' has no name without quotes", text),
-                   "regrasp experiment rotation --case 'upright: tilt=90' -o DIR");
+    throw CliError(kUsage, fmt::format("--case '{}' has no name without quotes", text));
+  std::set<std::string> keys;
   std::istringstream words(colon == std::string::npos ? text : text.substr(colon + 1));
   for (std::string word; words >> word;) {
     const auto [key, value] = NameAndValue(word, "--case");
-    if (key == "object")
-      c.setting.object = ModelName(value);
-    else if (key == "tilt")
-      c.setting.tilt_deg = ParseQuantity(value, "--case tilt", "deg");
-    else if (key == "push")
-      c.setting.push_n = ParseQuantity(value, "--case push", "N");
-    else if (key == "turns")
-      c.setting.turns = ParseNumber(value, "--case turns");
-    else if (key == "criterion")
-      c.setting.criterion = value;
-    else
-      c.setting.set.emplace_back(key, value);
+    if (!keys.insert(key).second)
+      throw CliError(kUsage, fmt::format("--case '{}': {} is given twice", text, key));
+    Add(key, value, &c.setting);
   }
   return c;
 }
@@ -61,7 +81,7 @@ std::string Text(const Case& c) {
   std::string text = c.name + ":";
   if (!c.setting.object.empty()) text += " object=" + c.setting.object;
   if (c.setting.tilt_deg) text += fmt::format(" tilt={}", *c.setting.tilt_deg);
-  if (c.setting.push_n != 0) text += fmt::format(" push={}", c.setting.push_n);
+  if (c.setting.push_n) text += fmt::format(" push={}", *c.setting.push_n);
   if (!c.setting.criterion.empty()) text += " criterion=" + c.setting.criterion;
   if (c.setting.turns) text += fmt::format(" turns={}", *c.setting.turns);
   for (const auto& [name, value] : c.setting.set) text += fmt::format(" {}={}", name, value);
@@ -70,12 +90,19 @@ std::string Text(const Case& c) {
 
 Setting Join(Setting common, const Setting& special) {
   if (!special.object.empty()) common.object = special.object;
-  if (special.tilt_deg) common.tilt_deg = special.tilt_deg;
-  if (special.push_n != 0) common.push_n = special.push_n;
+  const auto drop = [&common](const std::string& name) {
+    std::erase_if(common.set, [&name](const auto& item) { return item.first == name; });
+  };
+  if (special.tilt_deg) {
+    common.tilt_deg = special.tilt_deg;
+    drop(kGravityName);
+  }
+  if (special.push_n) common.push_n = special.push_n;
   if (special.turns) common.turns = special.turns;
   if (!special.criterion.empty()) common.criterion = special.criterion;
   for (const auto& [name, value] : special.set) {
-    std::erase_if(common.set, [&name = name](const auto& item) { return item.first == name; });
+    drop(name);
+    if (name == kGravityName) common.tilt_deg.reset();
     common.set.emplace_back(name, value);
   }
   return common;
@@ -109,7 +136,7 @@ std::vector<std::pair<std::string, Json>> Parameters(const Setting& setting) {
   if (setting.tilt_deg) {
     const double tilt = *setting.tilt_deg * std::numbers::pi / 180;
     parameters.emplace_back(
-        "gravity", std::vector<double>{0, kGravity * std::cos(tilt), kGravity * std::sin(tilt)});
+        kGravityName, std::vector<double>{0, kGravity * std::cos(tilt), kGravity * std::sin(tilt)});
   }
   for (const auto& [name, value] : setting.set)
     parameters.emplace_back(name, ParseParameterValue(value));

@@ -11,10 +11,13 @@
 
 namespace regrasp::cli {
 
+// What options and cases allow, as the daemon does.
+inline constexpr double kMostTilt_deg = 180, kMostPush_n = 100, kMostTurns = 1000;
+
 struct Setting {
   std::string object;              ///< name or absolute path; empty: the scenario's
   std::optional<double> tilt_deg;  ///< 0 palm up, 90 fingers down; none: the scenario's
-  double push_n = 0;               ///< rotations: a push in a random direction, every second
+  std::optional<double> push_n;    ///< rotations: a push in a random direction, every second
   std::optional<double> turns;     ///< rotations, in a case: instead of the plan's
   std::string criterion;           ///< explorations, in a case: instead of the plan's
   std::vector<std::pair<std::string, std::string>> set;  ///< parameters, values as typed
@@ -28,12 +31,13 @@ struct Case {
 };
 
 /// "NAME: KEY=VALUE ..." or "KEY=VALUE ..." (which is then the name, too). KEY is object, tilt,
-/// push, turns, criterion or a parameter; "NAME:" alone changes nothing. Throws CliError(kUsage).
+/// push, turns, criterion or a parameter, each at most once and within the limits of the option of
+/// that name; "NAME:" alone changes nothing. Throws CliError(kUsage).
 Case ParseCase(const std::string& text);
 /// The inverse: ParseCase(Text(c)) is c.
 std::string Text(const Case& c);
 
-/// `common` with what `special` says differently.
+/// `common` with what `special` says differently. Tilt and gravity are one.
 Setting Join(Setting common, const Setting& special);
 
 /// The cases of a sweep: for each of `cases` (or for none) one per value, in their order. Each is

@@ -171,7 +171,7 @@ Json Rotate(SteppedDaemon* daemon, const Plan& plan, const Unit& unit, WatchedRu
   row.update(Begun(unit, status, grasp));
   Json record;
   GaitEvents events(daemon);
-  const double push_n = plan.setting(unit.which).push_n;
+  const double push_n = plan.setting(unit.which).push_n.value_or(0);
   RandomStream pushes(static_cast<std::uint64_t>(unit.seed), kPushStream);
   if (Done(grasp)) {
     Json params = {{"turns", turns_wanted}, {"axis", ParseNumbers(unit.subject, 3, "--axis")}};

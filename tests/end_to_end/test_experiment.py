@@ -157,12 +157,37 @@ class Refusals(ExperimentCase):
         for words, part in [(["--finger", "rong"], "'rong' is none of"), (["--shard", "3/2"], "--shard '3/2'"), (["--set", "exploration.epsilon"], "NAME=VALUE"),
                             (["--set", "gait.hop=0", "--set", "gait.hop=1"], "gait.hop is given twice"), (["--case", "a: gait.hop=0 gait.hop=1"], "gait.hop is given twice"),
                             (["--noise", "loud"], "'loud' is none of"), (["--rays", "-1"], "--rays"),
-                            (["--estimator", "guess"], "'guess' is none of"), (["-n", "0"], "--seeds")]:
+                            (["--estimator", "guess"], "'guess' is none of"), (["-n", "0"], "--seeds"), (["--finger", ""], "--finger is empty"),
+                            (["--tilt", "45", "--set", "gravity=0,0,-9.81"], "gravity is given twice"),
+                            (["--set", "object.mass_kg=0.1,0.2", "--case", "a: object.mass_kg=0.3"], "the case 'a' gives object.mass_kg, too")]:
             with self.subTest(words):
                 self.assertIn(part, self.refused_experiment(2, "exploration", *words, *out))
         self.assertIn("epsilom", self.refused_experiment(6, "exploration", "--set", "exploration.epsilom=3", *out))
+        self.assertIn("gait.speed_rad_s is given by --speed, too", self.refused_experiment(2, "rotation", "--speed", "50", "--set", "gait.speed_rad_s=0.1", *out))
+        self.assertIn("gait.speed_rad_s is given by --speed, too", self.refused_experiment(2, "rotation", "--speed", "50", "--case", "a: gait.speed_rad_s=0.1", *out))
+        self.assertIn("gait.mode is given by --gaits, too", self.refused_experiment(2, "zoo", "--set", "gait.mode=exploring", *out))
+        self.assertIn("--axis 1e7,0,0: allowed are", self.refused_experiment(2, "rotation", "--axis", "1e7,0,0", *out))
         self.assertFalse((self.dir / "none").exists())
         self.refused_experiment(6, "merge", self.dir / "nowhere", "-o", self.dir / "none")
+
+
+    def test_a_name_is_given_once_and_the_word_for_all_alone(self):
+        out = ["--models-dir", SOURCE / "models", "-o", self.dir / "none"]
+        for words in (["exploration", "--finger", "ring,ring"], ["exploration", "--noise", "off,off"], ["exploration", "--estimator", "secant,secant"],
+                      ["zoo", "--objects", "sphere,egg,sphere"], ["zoo", "--gaits", "planned,planned"], ["prediction", "--objects", "cube_40mm,cube_40mm"]):
+            with self.subTest(words):
+                cause = self.refused_experiment(2, *words, *out)
+                self.assertIn(f"{words[1]} {words[2]}: '{words[2].split(',')[0]}' is given twice", cause)
+        for words in (["exploration", "--finger", "all,ring"], ["zoo", "--objects", "zoo,sphere"], ["prediction", "--objects", "sphere,zoo"]):
+            with self.subTest(words):
+                self.assertIn("stands for every name and goes alone", self.refused_experiment(2, *words, *out))
+        # Where nothing is like the name, the hint is the word for all.
+        self.assertEqual(self.refused(2, "experiment", "zoo", "--objects", "qqqqqqqqqq", *out)[1], "  try: regrasp experiment zoo --objects zoo -o DIR")
+        self.assertFalse((self.dir / "none").exists())
+
+    def test_a_hint_is_of_the_same_command(self):
+        for words in (["--shard", "3/2"], ["--size", "5mm"]):
+            self.assertEqual(self.refused(2, "experiment", "rotation", *words, "-o", self.dir / "none")[1], "  try: regrasp help experiment rotation")
 
 
 class OnATerminal(ExperimentCase):

@@ -108,11 +108,23 @@ class Cases(ExperimentCase):
         self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
         self.assertEqual(self.rows("single"), [rows[1]])
 
+    def test_what_a_case_gives_takes_the_place_of_what_holds_for_all(self):
+        common = ["--push", "0.5", "--set", "object.friction=0.5", "--set", "gravity=0,0,-9.81"]
+        self.run_experiment(*self.TURN, *common, "--case", "own: push=0 object.friction=0.6 tilt=45", "--case", "common:", "-o", self.dir / "both")
+        self.run_experiment(*self.TURN, "--set", "object.friction=0.6", "--tilt", "45", "-o", self.dir / "own")
+        self.run_experiment(*self.TURN, *common, "-o", self.dir / "common")
+        self.assertEqual([row["state_hash"] for row in self.rows("both")], [self.rows(name)[0]["state_hash"] for name in ("own", "common")])
+
     def test_bad_cases_make_no_directory(self):
         out = ["--models-dir", SOURCE / "models", "-o", self.dir / "none"]
         for words, part in [(["rotation", "--case", "a: tilt"], "'tilt' is not NAME=VALUE"), (["rotation", "--case", ": tilt=3"], "no name"),
                             (["rotation", "--case", "a:", "--case", "a: tilt=3"], "two cases have the name 'a'"),
-                            (["exploration", "--case", "a: push=1"], "push and turns are for rotations"), (["rotation", "--push", "-1"], "--push")]:
+                            (["exploration", "--case", "a: push=1"], "push and turns are for rotations"), (["rotation", "--push", "-1"], "--push"),
+                            (["rotation", "--case", "a: push=-1"], "push -1: allowed are 0 to 100 N"), (["rotation", "--case", "a: push=1000"], "push 1000: allowed are"),
+                            (["rotation", "--case", "a: tilt=900"], "tilt 900: allowed are -180 to 180 deg"),
+                            (["rotation", "--case", "a:", "--case", "b: turns=5000"], "turns 5000: allowed are -1000 to 1000"),
+                            (["rotation", "--case", "a: tilt=1 tilt=2"], "tilt is given twice"), (["rotation", "--case", "a: object="], "object= has no value"),
+                            (["exploration", "--case", "a: criterion=manipulability,reserve"], "a case has one criterion")]:
             with self.subTest(words):
                 self.assertIn(part, self.refused_experiment(2, *words, *out))
         self.assertIn("gait.mod", self.refused_experiment(6, "rotation", "--case", "a:", "--case", "b: gait.mod=3", *out))
