@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "cli/experiment/identity.h"
 #include "cli/experiment/runner.h"
 #include "cli/experiment/summary.h"
 #include "cli/experiment/trial.h"
@@ -13,21 +14,6 @@
 namespace regrasp::cli {
 
 namespace {
-
-/// What decides the results of a case, as its daemon tells.
-void AddIdentity(const Json& identity, std::size_t which, Plan* plan) {
-  Json models = Json::object();
-  for (const auto& [kind, model] : identity.at("models").items())
-    models[kind] = fmt::format("{} {}", Plain(model.at("name")), Plain(model.at("hash")));
-  const Json& parameters = identity.at("parameters");
-  if (plan->cases.empty()) {
-    plan->models = models;
-    plan->parameters = parameters;
-  } else {
-    plan->models[plan->cases.at(which).name] = models;
-    plan->parameters[plan->cases.at(which).name] = parameters;
-  }
-}
 
 /// The error for a `name` that `flag` does not know; `whole` stands for all names.
 CliError NoneOf(const Plan& plan, const char* flag, const std::string& name,
@@ -78,15 +64,13 @@ void CompletePlan(Plan* plan) {
   for (std::size_t i = 1; i < plan->num_cases(); ++i) {
     SteppedDaemon daemon(plan->DaemonArguments(i));
     Prepare(&daemon, *plan, i);
-    AddIdentity(daemon.Call("identity"), i, plan);
+    AddIdentity(&daemon, i, plan);
   }
   SteppedDaemon daemon(plan->DaemonArguments());
   plan->version = Plain(daemon.Call("version").at("version"));
   plan->build = DaemonBuild();
   Prepare(&daemon, *plan);
-  const Json identity = daemon.Call("identity");
-  plan->built_from = Plain(identity.at("build"));
-  AddIdentity(identity, 0, plan);
+  AddIdentity(&daemon, 0, plan);
   if (plan->rotation()) return;
   std::vector<std::string> fingers;
   const Json contacts = daemon.Call("contacts");
@@ -107,10 +91,11 @@ Json RunExperiment(Context& context, const Plan& plan, int workers,
   try {
     RunPlan(context, plan, workers, &store);
   } catch (const CliError& error) {
+    const bool again = error.code != kUsage && error.code != kRefused;
     throw CliError(error.code,
                    fmt::format("{}; {} of {} finished and are kept in {}", error.what(),
                                store.trials().size(), plan.Mine().size(), directory.string()),
-                   "the same command again goes on");
+                   again ? "the same command again goes on" : error.hint);
   }
   return WriteResults(plan, store.trials(), directory);
 }

@@ -8,6 +8,7 @@
 
 #include "cli/demo/figures.h"
 #include "cli/experiment/experiments.h"
+#include "cli/experiment/identity.h"
 #include "cli/experiment/runner.h"
 #include "cli/experiment/summary.h"
 
@@ -66,6 +67,7 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   std::vector<std::string> arguments = results.parts.front().plan.DaemonArguments();
   arguments.insert(arguments.end(), {"--output-dir", fs::absolute(data).string()});
   SteppedDaemon daemon(arguments);
+  CheckIdentity(&daemon, 0, results.parts.front().plan);
   // The page tells the paper's gait.
   daemon.Call("param.set", {{"name", "gait.preset"}, {"value", "paper"}});
   const Json parameters = daemon.Call("param.get");

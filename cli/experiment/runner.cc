@@ -17,6 +17,7 @@
 #include <thread>
 #include <tuple>
 
+#include "cli/experiment/identity.h"
 #include "cli/experiment/trial.h"
 
 namespace regrasp::cli {
@@ -156,6 +157,7 @@ void RunPlan(Context& context, const Plan& plan, int workers, Store* store) {
           daemon.reset();
           daemon = std::make_unique<SteppedDaemon>(plan.DaemonArguments(what.which));
           Prepare(daemon.get(), plan, what.which);
+          CheckIdentity(daemon.get(), what.which, plan);
           prepared = what.which;
         }
         const UnitResult result = RunUnit(daemon.get(), plan, what);

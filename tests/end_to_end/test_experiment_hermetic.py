@@ -91,6 +91,41 @@ class Hermetic(ExperimentCase):
         self.run_experiment(*one[:-1], self.dir / "two", "--shard", "2/2")
         self.assertIn("models.object was", self.refused_experiment(5, "merge", self.dir / "one", self.dir / "two", "-o", self.dir / "all"))
 
+    def test_what_changes_while_it_runs_is_refused_and_not_booked(self):
+        # The real programs, but as the third daemon starts (the worker's for the first case) a model's file changes, as the seventh does `regraspd` itself.
+        programs = self.dir / "bin"
+        programs.mkdir()
+        shutil.copy(REGRASP, programs)
+        (programs / "regrasp-plot-experiment").symlink_to(REGRASP.parent / "regrasp-plot-experiment")
+        model, starts, daemon = self.dir / "ball.urdf", self.dir / "starts", programs / "regraspd"
+        model.write_text((SOURCE / "models" / "objects" / "sphere_45mm.urdf").read_text())
+        before = model.read_text()
+        daemon.write_text(f'''#!/bin/sh
+echo start >> "{starts}"
+n=$(wc -l < "{starts}")
+[ $n -ne 3 ] || sed -i s/0.0225/0.0215/ "{model}"
+[ $n -ne 7 ] || echo "# changed" >> "$0"
+exec "{REGRASP.parent}/regraspd" "$@"
+''')
+        daemon.chmod(0o755)
+        program = daemon.read_text()
+        words = ["experiment", "rotation", "--angle", "15", "-n", "1", "--case", "one:", "--case", f"two: object={model}", "--workers", "1",
+                 "--models-dir", SOURCE / "models", "-o", self.dir / "out"]
+        done = self.regrasp(*words, binary=programs / "regrasp")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertRegex(done.stderr, r'object \S+/ball.urdf changed while the experiment ran: was "\S+ \w+", is "\S+ \w+"; 1 of 2 finished')
+        self.assertNotIn("again goes on", done.stderr)
+        self.assertEqual((self.dir / "out" / "trials.jsonl").read_text().count("\n"), 1)
+        model.write_text(before)
+        done = self.regrasp(*words, binary=programs / "regrasp")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn("regraspd changed while the experiment ran", done.stderr)
+        self.assertEqual((self.dir / "out" / "trials.jsonl").read_text().count("\n"), 1)
+        daemon.write_text(program)
+        done = self.regrasp(*words, binary=programs / "regrasp")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([row["case"] for row in self.rows("out")], ["one", "two"])
+
     def test_a_faulted_trial_is_booked_and_the_others_go_on(self):
         # The real programs, but the simulation of seed 6 faults while it explores.
         programs = self.dir / "bin"
