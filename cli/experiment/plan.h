@@ -81,6 +81,9 @@ struct Plan {
 Json ToJson(const Plan& plan);
 /// Throws CliError(kIo) naming `path` when `json` is no plan.
 Plan PlanFromJson(const Json& json, const std::string& path);
+/// A key of what decides the results of a unit: hex, of the plan less seeds and shard, which say
+/// only how many units there are and which of them are run.
+std::string KeyOf(const Plan& plan);
 /// "noise was [\"paper\"], is [\"off\"]; models.object was ..., is ..." for every difference but
 /// the shard; empty when there is none.
 std::string Difference(const Plan& before, const Plan& now);

@@ -8,6 +8,7 @@
 #include "cli/experiment/plan.h"
 #include "cli/experiment/plan_words.h"
 #include "cli/print/print.h"
+#include "core/common/fnv1a.h"
 
 namespace regrasp::cli {
 namespace {
@@ -102,6 +103,13 @@ Plan PlanFromJson(const Json& json, const std::string& path) {
     throw CliError(kIo, fmt::format("{} does not describe an experiment: {}", path, error.what()),
                    "ls " + path);
   }
+}
+
+std::string KeyOf(const Plan& plan) {
+  Json json = ToJson(plan);
+  json.erase("seeds");
+  json.erase("shard");
+  return fmt::format("{:016x}", Fnv1a(json.dump()));
 }
 
 std::string Difference(const Plan& before, const Plan& now) {

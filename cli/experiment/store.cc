@@ -51,16 +51,18 @@ std::string ReadFile(const fs::path& path) {
   }
 }
 
-/// What a line of trials.jsonl ends with: FNV-1a of the line without it, in hex.
-std::string CheckOf(const Json& line) { return fmt::format("{:016x}", Fnv1a(line.dump())); }
+/// What a line of trials.jsonl ends with: FNV-1a of the experiment's key and the line without it.
+std::string CheckOf(const std::string& key, const Json& line) {
+  return fmt::format("{:016x}", Fnv1a(key + line.dump()));
+}
 
-/// Null unless the line is whole and as it was written.
-Json Whole(const std::string& text) {
+/// Null unless the line is whole, as it was written, and of the experiment with this key.
+Json Whole(const std::string& key, const std::string& text) {
   Json line = Json::parse(text, nullptr, false);
   if (!line.is_object() || !line.contains(kCheck)) return nullptr;
   const Json check = line[kCheck];
   line.erase(kCheck);
-  return check == CheckOf(line) ? line : Json();
+  return check == CheckOf(key, line) ? line : Json();
 }
 
 UnitResult ResultOf(const Json& line) {
@@ -90,9 +92,10 @@ Trials ReadTrials(const fs::path& directory, const Plan& plan) {
   const fs::path path = directory / kTrialsFile;
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return trials;
+  const std::string key = KeyOf(plan);
   std::istringstream file(ReadFile(path));
   for (std::string line; std::getline(file, line);) {
-    const Json json = Whole(line);
+    const Json json = Whole(key, line);
     if (!At(json, "unit").is_number_unsigned() || !At(json, "rows").is_array()) continue;
     const std::int64_t seeds = json.value("seeds", plan.seeds);
     if (seeds < 1 || seeds > plan.seeds) continue;
@@ -112,7 +115,7 @@ void WriteFile(const fs::path& path, const std::string& text) {
 }
 
 Store::Store(fs::path directory, const Plan& plan)
-    : directory_(std::move(directory)), seeds_(plan.seeds) {
+    : directory_(std::move(directory)), key_(KeyOf(plan)), seeds_(plan.seeds) {
   std::error_code error;
   fs::create_directories(directory_, error);
   if (error)
@@ -161,7 +164,7 @@ Store::~Store() {
 
 void Store::Add(std::size_t unit, const UnitResult& result) {
   Json whole = {{"unit", unit}, {"seeds", seeds_}, {"rows", result.rows}, {"map", result.map}};
-  whole[kCheck] = CheckOf(whole);
+  whole[kCheck] = CheckOf(key_, whole);
   const std::string line = whole.dump() + "\n";
   WriteAll(file_, line, directory_ / kTrialsFile);
   // As it will be read again, so that a run in one go and one in two give the same bytes.

@@ -5,8 +5,9 @@
 ///   trials.jsonl     a line for each finished unit, in the order in which they finished, with the
 ///                    number of seeds that its place among the units belongs to
 ///   trials.csv, maps.csv, summary.json, summary.png    made from these when all have finished
-/// A line is written at once when its unit has finished, and ends with a check of itself: one that
-/// a crash cut off, or that is not as it was written, is ignored and its unit runs again.
+/// A line is written at once when its unit has finished, and ends with a check of itself and of the
+/// plan: one that a crash cut off, that is not as it was written, or that is of another experiment
+/// is ignored and its unit runs again.
 
 #include <filesystem>
 #include <map>
@@ -35,6 +36,7 @@ class Store {
 
  private:
   std::filesystem::path directory_;
+  std::string key_;  ///< of the plan
   std::int64_t seeds_ = 0;
   int lock_ = -1, file_ = -1;
   Trials trials_;

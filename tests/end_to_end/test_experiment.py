@@ -53,6 +53,17 @@ class Independence(ExperimentCase):
         self.assertNotIn("seed", self.explore("cut").stderr)
         self.assert_same_results("one", "cut")
 
+        # Nor is a line of another experiment one of this, whose plan has gone or was changed: all run again.
+        (self.dir / "cut" / "experiment.json").unlink()
+        self.assertNotIn("are there already", self.explore("cut", "--noise", "off").stderr)
+        self.assertEqual({row["noise"] for row in self.rows("cut")}, {"off"})
+        for name in ("trials.jsonl", "experiment.json"):
+            (self.dir / "cut" / name).write_bytes((self.dir / "one" / name).read_bytes())
+        plan = (self.dir / "cut" / "experiment.json").read_text()
+        (self.dir / "cut" / "experiment.json").write_text(plan.replace('"paper"', '"off"'))
+        self.assertNotIn("are there already", self.explore("cut", "--noise", "off").stderr)
+        self.assertEqual({row["noise"] for row in self.rows("cut")}, {"off"})
+
         # The example for a cluster, by hand.
         env = environment(PATH=f"{REGRASP.parent}:/usr/bin:/bin", SLURM_ARRAY_TASK_MAX="2", REGRASP_RESULTS=str(self.dir))
         for shard in (1, 2):
