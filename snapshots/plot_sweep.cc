@@ -36,7 +36,10 @@ void PlotSweep(const ExperimentPicture& picture, const std::string& path) {
   const double sheet = (narrow ? kNarrowTop + kNarrowBottom : kTop + kBottom) +
                        m * (narrow ? kNarrowPanel : kPanelHeight) + (m - 1) * gap_y;
   options.height = static_cast<int>(sheet);
-  Canvas canvas(SizeOf(options, sheet), path);
+  CanvasSize size = SizeOf(options, sheet);
+  // Text as wide sheets have it, however low this one is: a wide sheet is else 1000 units high.
+  size.logical_width = std::min(size.logical_width, 1599.0);
+  Canvas canvas(size, path);
   const double below = DrawTitle(&canvas, picture.title, picture.facts);
   const std::array<LegendGroup, 1> legends = {LegendGroup{"", MarkLegend(picture, series, false)}};
   const Layout layout(canvas, legends);

@@ -158,6 +158,30 @@ TEST_F(Snapshots, InAColumnAllTextIsSevenPointsHighAndOnTheSheet) {
   }
 }
 
+TEST_F(Snapshots, ASweepIsAsHighAsItsPanels) {
+  ExperimentPicture sweep;
+  sweep.title = "Sweep";
+  sweep.facts = "a · b";
+  const auto height_and_lowest = [&] {
+    PlotSweep(sweep, File("sweep.svg"));
+    const std::string svg = Bytes(File("sweep.svg"));
+    std::smatch sheet;
+    EXPECT_TRUE(std::regex_search(svg, sheet, std::regex("viewBox=\"0 0 ([0-9.]+) ([0-9.]+)\"")));
+    const std::regex text("<text transform=\"translate\\(([0-9.-]+) ([0-9.-]+)\\)");
+    double lowest = 0;
+    for (std::sregex_iterator it(svg.begin(), svg.end(), text), end; it != end; ++it)
+      lowest = std::max(lowest, std::stod((*it)[2]));
+    return std::pair{std::stod(sheet[2]), lowest};
+  };
+  for (const char* finger : {"first", "middle", "ring", "little"}) {
+    for (const char* noise : {"off", "paper", "coarse"})
+      sweep.groups.push_back({noise, "secant", finger, {{"φ rose", 0.9, 0.6, 1}}, {}});
+    // The name of the axis is the last on the sheet.
+    const auto [height, lowest] = height_and_lowest();
+    EXPECT_LT(height - lowest, 80) << finger;
+  }
+}
+
 TEST_F(Snapshots, UnwritablePathUnknownSuffixAndBadSizeAreRefused) {
   for (const PlotRow& plot : kPlotTable) {
     const std::string missing = File("no_such_folder/x.png"), gif = File("x.gif"),
