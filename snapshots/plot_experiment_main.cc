@@ -140,7 +140,14 @@ PredictionPicture PredictionOf(const Json& summary) {
     const bool known = std::any_of(picture.predictors.begin(), picture.predictors.end(),
                                    [&](const PredictorMark& p) { return p.name == name; });
     if (known) continue;
-    PredictorMark mark{name, json.at("form"), json.at("auc"), json.at("low"), json.at("high"), {},
+    const Json& area = json.at("auc");
+    const bool interval = json.at("low").is_number();  // too few runs have none
+    PredictorMark mark{name,
+                       json.at("form"),
+                       area,
+                       interval ? json.at("low") : area,
+                       interval ? json.at("high") : area,
+                       {},
                        {}};
     for (const Json& point : json.at("roc")) {
       mark.false_alarms.push_back(point.at(0));

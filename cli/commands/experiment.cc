@@ -50,6 +50,7 @@ void Print(Context& context, const Invocation& invocation, const Json& summary,
       if (&table != &tables.front()) out.Line();
       out.Add(Render(out, table, format));
     }
+    if (const std::string note = LeftOut(summary); !note.empty()) out.Add(Note(out, note, format));
     if (format != TableFormat::kText) return;
     out.Line();
     out.Line("trials   " + (directory / "trials.csv").string());

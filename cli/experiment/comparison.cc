@@ -40,12 +40,12 @@ Json Compare(const Measure& measure, const Pairs& pairs) {
   }
   Json json = {{"n", differences.size()}};
   if (differences.empty()) return json;
-  const Interval interval = BootstrapInterval(differences);
+  const auto interval = BootstrapInterval(differences);
   json.update({{"base", Mean(base)},
                {"other", Mean(other)},
                {"difference", Mean(differences)},
-               {"low", interval.low},
-               {"high", interval.high},
+               {"low", interval ? Json(interval->low) : Json()},
+               {"high", interval ? Json(interval->high) : Json()},
                {"sd", StandardDeviation(differences)},
                {"test", measure.success ? "mcnemar" : "wilcoxon"},
                {"p", measure.success ? McNemarP(gained, lost) : WilcoxonP(differences)}});
@@ -86,13 +86,25 @@ Pairs PairsOf(const Trials& trials, const Contrast& contrast, const Json& cell) 
   return pairs;
 }
 
+/// Whether both settings maximise the same in every pair: else their phi have different units.
+bool SameCriterion(const Pairs& pairs) {
+  return std::all_of(pairs.begin(), pairs.end(), [](const auto& pair) {
+    return At(*pair.first, "criterion") == At(*pair.second, "criterion");
+  });
+}
+
 Json Comparison(const Plan& plan, const Contrast& contrast, const Json& cell, const Pairs& pairs) {
-  Json measures = Json::object();
+  const bool same = SameCriterion(pairs);
+  Json measures = Json::object(), left_out = Json::array();
   for (const Measure& measure : MeasuresOf(plan))
-    measures[measure.column] = Compare(measure, pairs);
+    if (same || !measure.of_criterion)
+      measures[measure.column] = Compare(measure, pairs);
+    else
+      left_out.push_back(measure.column);
   Json json = {{"what", contrast.what}, {"base", contrast.base}, {"other", contrast.other}};
   json.update(cell);
   json["pairs"] = pairs.size();
+  if (!left_out.empty()) json["left_out"] = left_out;
   json["measures"] = measures;
   return json;
 }
@@ -177,11 +189,11 @@ void Adjust(Json* comparisons, const std::string& what, const char* column, bool
   std::vector<Json*> family;
   std::vector<double> p;
   for (Json& comparison : *comparisons) {
-    Json& measure = comparison["measures"][column];
-    if (At(comparison, "what") != what || IsSum(comparison) != sums || !measure.contains("p"))
-      continue;
-    family.push_back(&measure);
-    p.push_back(measure["p"]);
+    if (At(comparison, "what") != what || IsSum(comparison) != sums) continue;
+    const auto measure = comparison["measures"].find(column);
+    if (measure == comparison["measures"].end() || !measure->contains("p")) continue;
+    family.push_back(&*measure);
+    p.push_back(measure->at("p"));
   }
   const std::vector<double> adjusted = HolmAdjusted(p);
   for (std::size_t i = 0; i < family.size(); ++i) (*family[i])["p_holm"] = adjusted[i];
@@ -202,8 +214,8 @@ std::vector<Measure> MeasuresOf(const Plan& plan) {
     measures.push_back({"share_of_best", "share of best", 1, 3, false});
     measures.push_back({"near_best_s", "s to 95 % of best", 1, 2, false});
   }
-  measures.push_back({"phi_true_final", "φ at the end", 1, 3, false});
-  measures.push_back({"phi_true_gain", "φ gain %", 100, 1, false});
+  measures.push_back({"phi_true_final", "φ at the end", 1, 3, false, true});
+  measures.push_back({"phi_true_gain", "φ gain %", 100, 1, false, true});
   measures.push_back({"cycles", "cycles", 1, 0, false});
   return measures;
 }

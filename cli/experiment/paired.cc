@@ -78,8 +78,8 @@ double WilcoxonP(const std::vector<double>& differences) {
   return std::min(1.0, std::erfc(std::max(0.0, off - 0.5) / std::sqrt(squares / 4) / std::sqrt(2)));
 }
 
-Interval BootstrapInterval(const std::vector<double>& values) {
-  assert(!values.empty());
+std::optional<Interval> BootstrapInterval(const std::vector<double>& values) {
+  if (values.size() < kLeastForInterval) return std::nullopt;
   RandomStream random(kBootstrapSeed, kBootstrapStream);
   const std::size_t n = values.size();
   std::vector<double> means(kResamples);
@@ -90,7 +90,7 @@ Interval BootstrapInterval(const std::vector<double>& values) {
     mean = sum / static_cast<double>(n);
   }
   std::sort(means.begin(), means.end());
-  return {Quantile(means, 0.025), Quantile(means, 0.975)};
+  return Interval{Quantile(means, 0.025), Quantile(means, 0.975)};
 }
 
 std::vector<double> HolmAdjusted(const std::vector<double>& p) {
@@ -116,10 +116,17 @@ int TrialsForShare(double share, double precision) {
   return n;
 }
 
-int TrialsForMean(double deviation, double precision) {
+std::optional<int> TrialsForMean(double deviation, double precision) {
   assert(precision > 0);
+  if (deviation == 0) return std::nullopt;
   const double root = kZ * deviation / precision;
-  return std::max(2, static_cast<int>(std::min(1e9, std::ceil(root * root))));
+  return std::max(static_cast<int>(kLeastForInterval),
+                  static_cast<int>(std::min(1e9, std::ceil(root * root))));
+}
+
+int TrialsForDifference(double deviation, double precision) {
+  const std::optional<int> n = TrialsForMean(deviation, precision);
+  return n ? *n : TrialsForShare(0, precision / 2);  // from 0 it reaches to twice its half width
 }
 
 double StandardDeviation(const std::vector<double>& values) {

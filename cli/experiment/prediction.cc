@@ -193,6 +193,16 @@ double Score(const WatchedRun& run, std::size_t i, std::size_t measure, Form for
   return tt > 0 ? std::round(1e9 * ty / tt) / 1e9 : 0;
 }
 
+namespace {
+
+void AddInterval(std::vector<double> values, const char* low, const char* high, Json* json) {
+  const Interval interval = PercentileInterval(std::move(values));
+  (*json)[low] = interval.low;
+  (*json)[high] = interval.high;
+}
+
+}  // namespace
+
 Json PredictionSummary(const Trials& trials) {
   std::vector<WatchedRun> runs;
   for (const auto& [unit, result] : trials)
@@ -212,6 +222,7 @@ Json PredictionSummary(const Trials& trials) {
                   {"failures", failures},       {"windows_failing", failing},
                   {"windows_holding", holding}, {"predictors", Json::array()}};
   if (failing == 0 || holding == 0) return summary;
+  const bool enough = runs.size() >= kLeastForInterval;
   const auto resampled = ResampledRuns(runs.size(), kResamples);
   struct Predictor {
     Json json;
@@ -231,18 +242,18 @@ Json PredictionSummary(const Trials& trials) {
       Predictor predictor;
       predictor.area = roc.Area(std::vector<double>(runs.size(), 1.0));
       for (const auto& weights : resampled) predictor.areas.push_back(roc.Area(weights));
-      const Interval interval = PercentileInterval(predictor.areas);
       const Foretold told = CountForetold(runs, labels, m, form, roc.Threshold(kFalseAlarms));
       predictor.json = {{"measure", WatchedMeasures()[m].name},
                         {"title", WatchedMeasures()[m].title},
                         {"form", Name(form)},
                         {"auc", predictor.area},
-                        {"low", interval.low},
-                        {"high", interval.high},
+                        {"low", nullptr},
+                        {"high", nullptr},
                         {"foretold", ForetoldAt(points, kFalseAlarms)},
                         {"failures_with_windows", told.failures},
                         {"failures_foretold", told.foretold},
                         {"roc", Thinned(points)}};
+      if (enough) AddInterval(predictor.areas, "low", "high", &predictor.json);
       predictors.push_back(std::move(predictor));
     }
   }
@@ -252,10 +263,9 @@ Json PredictionSummary(const Trials& trials) {
   for (Predictor& predictor : predictors) {
     std::vector<double> behind;
     for (std::size_t k = 0; k < best.size(); ++k) behind.push_back(best[k] - predictor.areas[k]);
-    const Interval interval = PercentileInterval(std::move(behind));
     predictor.json["behind"] = predictors.front().area - predictor.area;
-    predictor.json["behind_low"] = interval.low;
-    predictor.json["behind_high"] = interval.high;
+    predictor.json["behind_low"] = predictor.json["behind_high"] = nullptr;
+    if (enough) AddInterval(std::move(behind), "behind_low", "behind_high", &predictor.json);
     summary["predictors"].push_back(std::move(predictor.json));
   }
   return summary;

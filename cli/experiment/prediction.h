@@ -57,7 +57,8 @@ WatchedRun WatchedRunFromJson(const Json& json);
 /// {"runs", "looks", "failures", "windows_failing", "windows_holding", "predictors": [{"measure",
 /// "form", "auc", "low", "high", "behind", "behind_low", "behind_high", "foretold",
 /// "failures_foretold", "roc": [[false alarms, foretold]]}]}, best first. Intervals by bootstrap
-/// over runs; `behind`: the best predictor's area minus this one's.
+/// over runs, null below kLeastForInterval of them; `behind`: the best predictor's area minus this
+/// one's.
 Json PredictionSummary(const Trials& trials);
 
 }  // namespace regrasp::cli

@@ -2,6 +2,7 @@
 
 /// Statistics of an experiment's summary.
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,10 @@ namespace regrasp::cli {
 struct Interval {
   double low = 0, high = 1;
 };
+
+/// Below so many values no 95 % interval of a median or mean is told: order statistics have none,
+/// and resamples of so few repeat them.
+inline constexpr std::size_t kLeastForInterval = 6;
 
 /// Wilson's score interval for a probability, 95 % [Wilson 1927]: `successes` of `trials`, 0 <=
 /// successes <= trials. It stays inside [0, 1] and is of use at 0 and at all successes, where the

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "cli/experiment/comparison.h"
@@ -52,6 +53,15 @@ std::string Probability(const Json& p) {
   const double value = p;
   return value < 1e-4 ? fmt::format("{:.0e}", value) : fmt::format("{:.4f}", value);
 }
+
+/// " (0.712–0.803)"; empty where there is no interval.
+std::string Between(const Json& json, const char* low, const char* high, const char* to) {
+  if (!json.at(low).is_number()) return "";
+  return fmt::format(" ({}{}{})", Fixed(json.at(low), 3), to, Fixed(json.at(high), 3));
+}
+
+/// "-": it cannot be told.
+std::string Number(std::optional<int> n) { return n ? std::to_string(*n) : "-"; }
 
 /// The measures of a summary, whose plan is JSON.
 std::vector<Measure> MeasuresIn(const Json& summary) {
@@ -131,6 +141,12 @@ TableFormat TableFormatOf(const std::string& word) {
                             : TableFormat::kText;
 }
 
+std::string Note(const Output& out, std::string text, TableFormat format) {
+  if (format == TableFormat::kLatex) return "% " + Escaped(text) + "\n";
+  if (format == TableFormat::kText && out.Phi() != "φ") Replace(&text, {{"φ", "phi"}});
+  return (format == TableFormat::kMarkdown ? "\n" : "") + text + "\n";
+}
+
 std::string Render(const Output& out, const TableData& table, TableFormat format) {
   if (format == TableFormat::kMarkdown) return Markdown(table);
   if (format == TableFormat::kLatex) return Latex(table);
@@ -204,15 +220,24 @@ TableData ComparisonTable(const Json& summary) {
       const auto sign = [&](const char* key) {
         return (m.at(key).get<double>() > 0 ? "+" : "") + number(key);
       };
+      const std::string interval =
+          m.at("low").is_number() ? fmt::format(" ({} to {})", sign("low"), sign("high")) : "";
       std::vector<std::string> cells = Settings(comparison, keys);
-      Append(&cells, {Plain(comparison.at("other")), Plain(comparison.at("base")), measure.title,
-                      Plain(m.at("n")), number("other"), number("base"),
-                      fmt::format("{} ({} to {})", sign("difference"), sign("low"), sign("high")),
-                      Probability(m.at("p")), Probability(At(m, "p_holm"))});
+      Append(&cells,
+             {Plain(comparison.at("other")), Plain(comparison.at("base")), measure.title,
+              Plain(m.at("n")), number("other"), number("base"), sign("difference") + interval,
+              Probability(m.at("p")), Probability(At(m, "p_holm"))});
       table.rows.push_back(std::move(cells));
     }
   }
   return table;
+}
+
+std::string LeftOut(const Json& summary) {
+  const Json& comparisons = At(summary, "comparisons");
+  const bool any = std::any_of(comparisons.begin(), comparisons.end(),
+                               [](const Json& one) { return one.contains("left_out"); });
+  return any ? "φ is not compared between cases of different criteria: its units differ." : "";
 }
 
 TableData PredictionTable(const Json& summary) {
@@ -223,10 +248,8 @@ TableData PredictionTable(const Json& summary) {
   for (const Json& p : summary.at("prediction").at("predictors"))
     table.rows.push_back(
         {Plain(p.at("title")), Plain(p.at("form")),
-         fmt::format("{:.3f} ({:.3f}–{:.3f})", p.at("auc").get<double>(), p.at("low").get<double>(),
-                     p.at("high").get<double>()),
-         fmt::format("{:.3f} ({:.3f} to {:.3f})", p.at("behind").get<double>(),
-                     p.at("behind_low").get<double>(), p.at("behind_high").get<double>()),
+         Fixed(p.at("auc"), 3) + Between(p, "low", "high", "–"),
+         Fixed(p.at("behind"), 3) + Between(p, "behind_low", "behind_high", " to "),
          Fixed(p.at("foretold"), 0, 100),
          fmt::format("{}/{}", Plain(p.at("failures_foretold")),
                      Plain(p.at("failures_with_windows")))});
@@ -251,7 +274,7 @@ TableData SampleSizeTable(const Json& summary, double precision) {
         if (!At(quantiles, "sd").is_number() || quantiles["mean"] == 0.0) continue;
         const double mean = std::abs(quantiles["mean"].get<double>());
         Append(&cells, {measure.title, Plain(quantiles.at("n")),
-                        std::to_string(TrialsForMean(quantiles["sd"], precision * mean))});
+                        Number(TrialsForMean(quantiles["sd"], precision * mean))});
       }
       table.rows.push_back(std::move(cells));
     }
@@ -260,12 +283,13 @@ TableData SampleSizeTable(const Json& summary, double precision) {
     for (const Measure& measure : MeasuresIn(summary)) {
       const Json& m = At(comparison.at("measures"), measure.column);
       if (!At(m, "sd").is_number() || (!measure.success && m["base"] == 0.0)) continue;
-      const double width =
-          measure.success ? precision : precision * std::abs(m["base"].get<double>());
+      const double base = std::abs(m["base"].get<double>());
       std::vector<std::string> cells = Settings(comparison, keys);
       Append(&cells, {fmt::format("{}: {} against {}", measure.title, Plain(comparison.at("other")),
                                   Plain(comparison.at("base"))),
-                      Plain(m.at("n")), std::to_string(TrialsForMean(m["sd"], width))});
+                      Plain(m.at("n")),
+                      measure.success ? std::to_string(TrialsForDifference(m["sd"], precision))
+                                      : Number(TrialsForMean(m["sd"], precision * base))});
       table.rows.push_back(std::move(cells));
     }
   }

@@ -30,8 +30,7 @@ class Pairs(ExperimentCase):
         differences = [final["secant", seed] - final["least_squares", seed] for seed in ("5", "6", "7")]
         measure = comparison["measures"]["phi_true_final"]
         self.assertAlmostEqual(measure["difference"], sum(differences) / 3, delta=1e-12)
-        self.assertGreaterEqual(measure["low"], min(differences) - 1e-12)
-        self.assertLessEqual(measure["high"], max(differences) + 1e-12)
+        self.assertEqual((measure["low"], measure["high"]), (None, None))  # three pairs have no interval
         # Of three signs alike one in four says as much; otherwise p is larger.
         self.assertGreaterEqual(measure["p"], 0.25)
         # Tables as a paper takes them, of a finished directory.
@@ -40,9 +39,16 @@ class Pairs(ExperimentCase):
         self.assertIn("least\\_squares", latex)
         self.assertRegex(latex, r"[ (]\$-\$\d")  # a minus, where a hyphen would be printed
         self.assertNotRegex(latex, r"[ (]-\d")
+        comparison_table = latex[latex.index("difference (95"):]
+        self.assertIn("$\\varphi$ rose", comparison_table)
+        self.assertNotIn(" to ", comparison_table)
         advice = self.run_experiment(*self.ONE, *both, "-n", "3", "--format", "markdown", "--precision", "0.05", "-o", self.dir / "grown").stdout
         self.assertIn("| secant | least_squares |", advice)
         self.assertIn("n for ±0.05", advice)
+        self.assertNotRegex(advice, r"secant against least_squares \| 3 \| 2 \|")
+        # All pairs agree that phi rose: as many as Wilson's interval of none that differs asks, 3.84 / 0.05 - 3.84.
+        self.assertEqual(comparison["measures"]["rose"]["sd"], 0)
+        self.assertIn("φ rose %: secant against least_squares | 3 | 73 |", advice)
 
     def test_a_sweep_makes_a_case_of_each_value(self):
         self.run_experiment(*self.ONE, "-n", "1", "--set", "object.friction=0.7,0.8", "--set", "gravity=0,0,-9.81", "-o", self.dir / "sweep")
@@ -56,6 +62,17 @@ class Pairs(ExperimentCase):
         self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
         self.assertEqual(self.rows("single"), self.rows("sweep")[:1])
         self.refused_experiment(2, *self.ONE, "--set", "object.friction=0.7,0.7", "-o", self.dir / "none")
+
+    def test_phi_of_two_criteria_is_not_compared(self):
+        words = [*self.ONE, "-n", "1", "--case", "phi:", "--case", "stability: criterion=stability", "--case", "again: object.friction=0.7", "-o", self.dir / "criteria"]
+        text = self.run_experiment(*words).stdout
+        self.assertIn("φ is not compared between cases of different criteria", text)
+        stability, again = self.summary("criteria")["comparisons"]
+        self.assertEqual((stability["other"], stability["left_out"]), ("stability", ["phi_true_final", "phi_true_gain"]))
+        self.assertEqual(sorted(stability["measures"]), ["cycles", "rose"])
+        self.assertEqual(sorted(again["measures"]), ["cycles", "phi_true_final", "phi_true_gain", "rose"])
+        self.assertNotIn("left_out", again)
+        self.assertIn("\n% $\\varphi$ is not compared", self.run_experiment(*words, "--format", "latex").stdout)
 
     def test_a_zoo_pairs_gaits_on_every_object(self):
         words = ["zoo", "--objects", "egg,sphere", "-n", "1", "--turns", "0.05", "--models-dir", SOURCE / "models"]
@@ -76,8 +93,7 @@ class Pairs(ExperimentCase):
         self.assertGreater(prediction["looks"], 30)
         self.assertGreater(prediction["windows_holding"], 0)
         for predictor in prediction["predictors"]:
-            self.assertLessEqual(0, predictor["low"])
-            self.assertLessEqual(predictor["low"], predictor["high"])
+            self.assertEqual((predictor["low"], predictor["behind_high"]), (None, None))  # of three runs
         # What the run gave does not depend on being looked at.
         words = shlex.split(self.rows("foretold")[0]["command"])
         words[words.index("-o") + 1] = self.dir / "single"

@@ -96,20 +96,26 @@ TEST(BootstrapInterval, OfZerosAndOnesIsBinomial) {
     }
     return 1.0;
   };
-  const Interval interval = BootstrapInterval(values);
+  const Interval interval = *BootstrapInterval(values);
   // One step of 1/n: 10 000 resamples place a quantile to 0.16 %, which may lie at a step's edge.
   EXPECT_NEAR(interval.low, quantile(0.025), 1.0 / n + 1e-12);
   EXPECT_NEAR(interval.high, quantile(0.975), 1.0 / n + 1e-12);
 }
 
 TEST(BootstrapInterval, IsTheSameEveryTime) {
-  const std::vector<double> values = {0.3, -0.1, 2.5, 0.7, 0.2};
-  const Interval one = BootstrapInterval(values), two = BootstrapInterval(values);
+  const std::vector<double> values = {0.3, -0.1, 2.5, 0.7, 0.2, 1.1};
+  const Interval one = *BootstrapInterval(values), two = *BootstrapInterval(values);
   EXPECT_EQ(one.low, two.low);
   EXPECT_EQ(one.high, two.high);
-  const Interval single = BootstrapInterval({4.5});
-  EXPECT_EQ(single.low, 4.5);
-  EXPECT_EQ(single.high, 4.5);
+}
+
+TEST(BootstrapInterval, ThereIsNoneBelowTheSixValuesThatAMedianTakes) {
+  for (std::size_t n = 1; n <= 8; ++n) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < n; ++i) values.push_back(static_cast<double>(i));
+    EXPECT_EQ(BootstrapInterval(values).has_value(), n >= 6) << n;
+    EXPECT_EQ(MedianInterval(values).has_value(), n >= 6) << n;
+  }
 }
 
 TEST(HolmAdjusted, AgreesWithThePublishedProcedure) {
@@ -141,7 +147,20 @@ TEST(SampleSize, IsTheLeastThatIsEnough) {
       if (n > 1) EXPECT_GT(half(n - 1), precision);
     }
   EXPECT_EQ(TrialsForMean(1.0, 0.5), 16);  // (1.96 / 0.5)^2 = 15.4
-  EXPECT_EQ(TrialsForMean(0.0, 0.5), 2);
+  EXPECT_EQ(TrialsForMean(0.01, 0.5), 6);  // fewer have no interval
+  EXPECT_EQ(TrialsForMean(0.0, 0.5), std::nullopt);
+}
+
+TEST(SampleSize, PairsThatAllAgreeDoNotMakeTwoEnough) {
+  // None of n pairs differs: Wilson's interval of their share ends at z^2 / (n + z^2).
+  const double z2 = 1.959963984540054 * 1.959963984540054;
+  for (const double precision : {0.02, 0.1, 0.3}) {
+    const int n = TrialsForDifference(0, precision);
+    EXPECT_LE(z2 / (n + z2), precision);
+    EXPECT_GT(z2 / (n - 1 + z2), precision);
+  }
+  EXPECT_EQ(TrialsForDifference(0, 0.1), 35);
+  EXPECT_EQ(TrialsForDifference(0.5, 0.1), *TrialsForMean(0.5, 0.1));
 }
 
 TEST(MedianInterval, HasThePublishedRanks) {

@@ -225,5 +225,16 @@ TEST(Prediction, FindsTheMeasureThatFalls) {
   EXPECT_GE(covers, 30);  // of 36 intervals of 95 %
 }
 
+TEST(Prediction, HasNoIntervalBelowSixRuns) {
+  Trials trials;
+  for (std::size_t r = 0; r < 6; ++r) {
+    trials[r].map = ToJson(RunWith({3.05}));
+    const Json summary = PredictionSummary(trials);
+    for (const Json& p : summary.at("predictors"))
+      for (const char* end : {"low", "high", "behind_low", "behind_high"})
+        EXPECT_EQ(p.at(end).is_number(), r + 1 >= 6) << end << r;
+  }
+}
+
 }  // namespace
 }  // namespace regrasp::cli
