@@ -23,7 +23,7 @@ class Guess {
     FindFingers();
     LockWrist();
     for (FingerChain& chain : chains_) Measure(hand_, &chain);
-    guess_.layout.X_HR = PalmFrame(hand_, chains_);
+    FindPalm();
     Name();
     SuggestDamping();
     return guess_;
@@ -68,6 +68,15 @@ class Guess {
       guess_.notes.push_back(fmt::format("wrist: {} moves every finger and is locked at {:.1f} deg",
                                          joint(j).name, hand_.Angle(j) * 180 / M_PI));
     }
+  }
+
+  void FindPalm() {
+    bool guessed = false;
+    guess_.layout.X_HR = PalmFrame(hand_, chains_, &guessed);
+    if (guessed)
+      guess_.notes.emplace_back(
+          "palm: its side is guessed from where the fingers stand: no joint's limits tell where "
+          "they bend to; hand new writes it to [palm], where it can be changed");
   }
 
   /// What the names of a chain agree on.
