@@ -1,6 +1,7 @@
 #include "core/posture/finger_chains.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace regrasp {
 namespace {
@@ -89,6 +90,25 @@ std::vector<int> TakeWrist(std::vector<FingerChain>* chains) {
     for (FingerChain& c : *chains) c.joints.erase(c.joints.begin());
   }
   return wrist;
+}
+
+std::vector<FingerGroup> FindGroups(const HandAtRest& hand,
+                                    const std::vector<FingerChain>& chains) {
+  std::vector<FingerGroup> groups;
+  std::vector<int> firsts;
+  for (const FingerChain& chain : chains) {
+    const int first = chain.joints.front();
+    if (std::ranges::find(firsts, first) != firsts.end()) continue;
+    firsts.push_back(first);
+    FingerGroup group;
+    std::ranges::copy_if(chains, std::back_inserter(group.chains),
+                         [&](const FingerChain& c) { return c.joints.front() == first; });
+    if (group.chains.size() < 2) continue;
+    std::vector<FingerChain> apart = group.chains;
+    group.palm = hand.joint(TakeWrist(&apart).back()).child;
+    groups.push_back(std::move(group));
+  }
+  return groups;
 }
 
 void Measure(const HandAtRest& hand, FingerChain* chain) {

@@ -45,6 +45,16 @@ std::vector<FingerChain> FindFingerChains(const HandAtRest& hand, std::vector<st
 /// Takes the joints that move every finger off the chains, as long as each keeps one. Returns them.
 std::vector<int> TakeWrist(std::vector<FingerChain>* chains);
 
+/// The link that carries several of the fingers, which a joint moves together, and not the others.
+struct FingerGroup {
+  int palm = -1;                    ///< link
+  std::vector<FingerChain> chains;  ///< two or more
+};
+
+/// The groups of chains without wrist. One may be a palm that bends (ring and little finger, say);
+/// two are two hands on one robot.
+std::vector<FingerGroup> FindGroups(const HandAtRest& hand, const std::vector<FingerChain>& chains);
+
 /// Fills in p_base and p_tip of a chain without wrist.
 void Measure(const HandAtRest& hand, FingerChain* chain);
 

@@ -51,7 +51,7 @@ class Guess {
     if (!sliding.empty())
       problems_.Add(0, "joints that are not revolute move nothing here: {}; a finger must turn",
                     fmt::join(sliding, ", "));
-    if (chains_.size() < 2 || chains_.size() > std::size_t{kMaxFingers})
+    if (chains_.size() < 2)
       problems_.Add(0,
                     "{} chains end in a link with a <collision>: the fingers; a hand has 2 .. {}{}",
                     chains_.size(), kMaxFingers,
@@ -59,6 +59,42 @@ class Guess {
                                  : fmt::format("; without one: {} (a <visual> is not read: copy it "
                                                "into a <collision>)",
                                                fmt::join(bare, ", ")));
+    problems_.ThrowIfAny();
+    CheckOneHand();
+  }
+
+  std::string TipsOf(const std::vector<FingerChain>& chains) const {
+    std::vector<std::string> tips;
+    for (const FingerChain& chain : chains) tips.push_back(link(chain.tip).name);
+    return fmt::format("{}", fmt::join(tips, ", "));
+  }
+
+  /// A robot with two hands is no hand with the fingers of both; nor is one with legs.
+  void CheckOneHand() {
+    std::vector<FingerChain> chains = chains_;
+    TakeWrist(&chains);
+    const std::vector<FingerGroup> groups = FindGroups(hand_, chains);
+    const bool many = chains_.size() > std::size_t{kMaxFingers};
+    if (!many && groups.size() < 2) return;
+    std::string hands;
+    for (const FingerGroup& group : groups)
+      hands += fmt::format("{}{} (fingers end in {})", hands.empty() ? "" : "; ",
+                           LinkElement(link(group.palm).name), TipsOf(group.chains));
+    const std::string count =
+        many ? fmt::format(
+                   "{} chains end in a link with a <collision>: the fingers; a hand has "
+                   "2 .. {}; ",
+                   chains_.size(), kMaxFingers)
+             : "";
+    if (groups.empty())
+      problems_.Add(0, "{}they end in {}; take out of the file what is not of the hand", count,
+                    TipsOf(chains_));
+    else
+      problems_.Add(0,
+                    "{}{}: {}; write a file of one hand: {} as its root, with all that hangs "
+                    "from it",
+                    count, groups.size() > 1 ? "more than one hand" : "what may be the hand", hands,
+                    groups.size() > 1 ? "one of these links" : "this link");
     problems_.ThrowIfAny();
   }
 

@@ -1,4 +1,4 @@
-/// How the palm lies of hands whose limits do not tell it as usual.
+/// How the palm lies of hands whose limits do not tell it as usual, and robots with two hands.
 
 #include "tests/unit/posture/posture_fixture.h"
 
@@ -107,6 +107,46 @@ TEST_F(PalmTest, OfEqualFingersAroundACentreTheFirstTells) {
       EXPECT_LT((guess.layout.X_HR.linear() * R.col(0) - Vector3d::UnitY()).norm(), 1e-6)
           << lower << " " << turn;
     }
+}
+
+TEST_F(PalmTest, TwoHandsOnOneRobotAreRefusedWithTheirLinks) {
+  std::string arms = "<robot name=\"two\"><link name=\"torso\"/>" + Link("chest") +
+                     Joint("torso", "chest", "0 0 0.1", "0 0 1", -1, 1);
+  for (const char* side : {"l_", "r_"}) {
+    const std::string arm = std::string(side) + "arm", hand = std::string(side) + "hand";
+    arms += Link(arm) + Link(hand) + Joint("chest", arm, "0 0.1 0", "0 0 1", -1, 1) +
+            Joint(arm, hand, "0 0 0.1", "1 0 0", -1, 1);
+  }
+  // Two of three fingers, which could be one hand of six; and two of five, too many.
+  for (const int count : {3, 5}) {
+    std::string text = arms;
+    for (const char* side : {"l_", "r_"}) {
+      std::string fingers = Fingers(side + std::string("hand"), {.prefix = side});
+      const std::size_t end = fingers.find(fmt::format("<link name=\"{}f{}_a\"", side, count));
+      text += fingers.substr(0, end);
+    }
+    const std::string why = WhyNot(Write("two.urdf", text + "</robot>"));
+    EXPECT_NE(
+        why.find("more than one hand: link \"l_hand\" (fingers end in l_f0_d, l_f1_d, l_f2_d"),
+        std::string::npos)
+        << why;
+    EXPECT_NE(why.find("link \"r_hand\" (fingers end in r_f0_d"), std::string::npos) << why;
+    EXPECT_NE(why.find("write a file of one hand: one of these links as its root"),
+              std::string::npos)
+        << why;
+    EXPECT_EQ(why.find("10 chains") != std::string::npos, count == 5) << why;
+  }
+  // One group is a palm that bends.
+  std::string bent = RowHandUrdf({.near = -0.2});
+  bent = Replaced(bent, "<parent link=\"palm\"/><child link=\"f3_a\"/>",
+                  "<parent link=\"f2_a\"/><child link=\"f3_a\"/>");
+  EXPECT_EQ(GuessHand(Write("bent.urdf", bent)).layout.fingers.size(), 5u);
+}
+
+TEST_F(PalmTest, TooManyChainsAreNamed) {
+  const std::string why = WhyNot(Write("nine.urdf", RadialHandUrdf(9)));
+  EXPECT_NE(why.find("they end in arm1c, arm2c, arm3c"), std::string::npos) << why;
+  EXPECT_NE(why.find("take out of the file what is not of the hand"), std::string::npos) << why;
 }
 
 }  // namespace
