@@ -11,6 +11,7 @@
 #include "core/files/names.h"
 #include "core/hand/mesh_path.h"
 #include "core/hand/urdf_file.h"
+#include "core/hand/urdf_unused.h"
 #include "core/hand/urdf_values.h"
 
 namespace regrasp {
@@ -310,6 +311,7 @@ class Checker {
 }  // namespace
 
 void CheckUrdf(const fs::path& path, XMLElement* robot, Problems* problems) {
+  WarnOfUnused(*robot, problems);
   Checker(path, problems).Check(robot);
 }
 

@@ -18,7 +18,8 @@ inline constexpr const char* kLacking = "lacking";
 /// numbers stand with one space between, <mesh filename> is the file (and "written" what was
 /// written), a joint that moves has a <limit> (of line 0 where the file has none), whose velocity
 /// nobody uses, and <dynamics> only where a damping is given. A <mass>, <inertia> or <limit effort>
-/// that the file has not is 0, and its element has the attribute kLacking.
+/// that the file has not is 0, and its element has the attribute kLacking. Warns of what is gone
+/// though it may matter (urdf_unused.h).
 void CheckUrdf(const std::filesystem::path& path, tinyxml2::XMLElement* robot, Problems* problems);
 
 }  // namespace regrasp
