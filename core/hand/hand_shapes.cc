@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/hand/mesh_path.h"
+#include "core/hand/mesh_units.h"
 #include "core/hand/primitive_mesh.h"
 #include "core/hand/shape_fit.h"
 #include "core/hand/urdf_values.h"
@@ -100,16 +101,17 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
   if (!options_.fill_missing_meshes) {
     problems_->Add(geometry.line,
                    "{}: <mesh> filename = {}: file not found{}; --fill-missing-meshes takes {}",
-                   LinkElement(in.name), Quoted(geometry.mesh_name),
+                   LinkElement(in.name), QuotedPath(geometry.mesh_name),
                    beside.empty() ? WherePackagesAre(geometry.mesh_name)
                                   : ", but " + beside.lexically_normal().string() + " is there",
                    beside.empty() ? "a capsule along the link" : "that");
     return {};
   }
   if (!beside.empty())
-    problems_->Warn(geometry.line, LinkElement(in.name),
-                    fmt::format("<mesh> filename = {}: not found; {} in its place",
-                                Quoted(geometry.mesh_name), beside.lexically_normal().string()));
+    problems_->Warn(
+        geometry.line, LinkElement(in.name),
+        fmt::format("<mesh> filename = {}: not found; {} in its place",
+                    QuotedPath(geometry.mesh_name), beside.lexically_normal().string()));
   return beside;
 }
 
@@ -128,7 +130,7 @@ Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
       geometry.line, LinkElement(in.name),
       fmt::format("<mesh> filename = {}: not found; a capsule of {:.3g} mm radius and {:.3g} mm "
                   "segment in its place",
-                  Quoted(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
+                  QuotedPath(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
   return shape;
 }
 
@@ -161,12 +163,9 @@ std::optional<Shape> HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& 
       box.extend(v);
     }
     if (const double size = box.sizes().maxCoeff(); size > kLargestLink)
-      throw ModelError(
-          fmt::format("{}: the mesh is {:.4g} m long; allowed are at most {:g} m{}", file.string(),
-                      size, kLargestLink,
-                      size < 1000 * kLargestLink
-                          ? "; if the file is in millimetres: scale=\"0.001 0.001 0.001\""
-                          : ""));
+      throw ModelError(fmt::format("{}: the mesh is {:.4g} m long; allowed are at most {:g} m{}",
+                                   file.string(), size, kLargestLink,
+                                   UnitHint(size, 1e-3, kLargestLink)));
     return Fitted(in, geometry, posed, file.string(), fingertip);
   } catch (const ModelError& error) {
     problems_->Add(geometry.line, "{}: {}", LinkElement(in.name), error.what());

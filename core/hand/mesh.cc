@@ -63,34 +63,55 @@ class Welder {
   std::vector<int> next_;
 };
 
-/// An edge that is not run through as often in one sense as in the other, if there is one.
-const std::pair<int, int>* OpenEdge(const TriangleMesh& mesh, bool with_flat,
-                                    std::map<std::pair<int, int>, int>* balance) {
-  balance->clear();
+/// How often triangles run through an edge from its corner of the lower index, and back.
+struct EdgeUse {
+  int forth = 0, back = 0;
+};
+using Edges = std::map<std::pair<int, int>, EdgeUse>;
+
+Edges EdgesOf(const TriangleMesh& mesh, bool with_flat) {
+  Edges edges;
   for (const auto& t : mesh.triangles) {
     if (!with_flat && IsFlat(mesh, t)) continue;
     for (int k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
-      (*balance)[std::minmax(a, b)] += a < b ? 1 : -1;
+      EdgeUse& use = edges[std::minmax(a, b)];
+      ++(a < b ? use.forth : use.back);
     }
   }
-  for (const auto& [edge, count] : *balance)
-    if (count != 0) return &edge;
-  return nullptr;
+  return edges;
+}
+
+bool IsClosed(const Edges& edges) {
+  return std::ranges::all_of(
+      edges, [](const auto& edge) { return edge.second.forth == edge.second.back; });
+}
+
+/// Throws ModelError with what an open surface has: holes, or triangles turned about.
+[[noreturn]] void RefuseOpen(const std::filesystem::path& file, const TriangleMesh& mesh,
+                             const Edges& edges) {
+  const auto is_open = [](const EdgeUse& use) { return (use.forth + use.back) % 2 != 0; };
+  const bool holes = std::ranges::any_of(edges, [&](const auto& e) { return is_open(e.second); });
+  int count = 0;
+  Vector3d p = Vector3d::Zero();
+  for (const auto& [edge, use] : edges)
+    if (holes ? is_open(use) : use.forth != use.back)
+      if (++count == 1) p = 0.5 * (mesh.vertices[edge.first] + mesh.vertices[edge.second]);
+  throw ModelError(fmt::format(
+      "{}: mesh {} {} of {} edges {}, the first at ({:.4g}, {:.4g}, {:.4g}); {}", file.string(),
+      holes ? "is not closed:" : "has no holes, but along", count, edges.size(),
+      holes ? "are open" : "triangles are turned against their neighbours", p.x(), p.y(), p.z(),
+      holes ? "each must belong to two triangles that face the same side: merge corners and close "
+              "holes (Blender: Mesh > Clean Up > Merge by Distance, Fill Holes)"
+            : "all must be counter-clockwise seen from outside (Blender: Mesh > Normals > "
+              "Recalculate Outside)"));
 }
 
 /// Makes the surface closed by triangles that have an area. Throws ModelError where it is not
 /// closed.
 void DropFlat(const std::filesystem::path& file, TriangleMesh* mesh) {
-  std::map<std::pair<int, int>, int> balance;
-  if (OpenEdge(*mesh, false, &balance) != nullptr) {
-    if (const std::pair<int, int>* open = OpenEdge(*mesh, true, &balance)) {
-      const Vector3d p = 0.5 * (mesh->vertices[open->first] + mesh->vertices[open->second]);
-      throw ModelError(fmt::format(
-          "{}: mesh is not closed: the edge at ({:.4g}, {:.4g}, {:.4g}) must belong to two "
-          "triangles that face the same side",
-          file.string(), p.x(), p.y(), p.z()));
-    }
+  if (!IsClosed(EdgesOf(*mesh, false))) {
+    if (const Edges edges = EdgesOf(*mesh, true); !IsClosed(edges)) RefuseOpen(file, *mesh, edges);
     FlipFlat(mesh);
   }
   std::erase_if(mesh->triangles, [&](const auto& t) { return IsFlat(*mesh, t); });

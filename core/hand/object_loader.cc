@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/hand/mesh_units.h"
 #include "core/hand/object_pieces.h"
 #include "core/hand/rigid_body.h"
 #include "core/hand/solid.h"
@@ -99,7 +100,13 @@ class ObjectReader {
     if (problems_.count() > before) return;
     const Solid solid = PiecesSolid(mesh, &facts_.overlap_m3);
     facts_.p_LCom = from_shape_ ? solid.centre : PCom();
-    facts_.pieces = static_cast<int>(PiecesOf(mesh).size());
+    const auto pieces = PiecesOf(mesh);
+    facts_.pieces = static_cast<int>(pieces.size());
+    if (const Parts parts = PartsOf(mesh.vertices, pieces); parts.count > 1)
+      problems_.Warn(collisions_.front().line, element_,
+                     fmt::format("{} parts that do not touch, {:.3g} mm apart: one rigid body all "
+                                 "the same",
+                                 parts.count, 1e3 * parts.gap));
     object_.vertices_O = std::move(mesh.vertices);
     object_.triangles = std::move(mesh.triangles);
     object_.bounding_radius = 0;
@@ -114,15 +121,9 @@ class ObjectReader {
     const double radius = object_.bounding_radius;
     constexpr double kMin = 1e-3, kMax = 1;
     if (radius >= kMin && radius <= kMax) return;
-    constexpr double kSmall = 5e-3;  // in a hand: smaller in millimetres means centimetres
-    const bool centimetres = radius > kMax && radius / 1000 < kSmall && radius / 100 <= kMax;
-    const bool millimetres = radius > kMax && radius / 1000 >= kMin && radius / 1000 <= kMax;
-    const char* fix =
-        !millimetres && !centimetres ? ""
-        : object_.kind == ObjectModel::Kind::kMesh
-            ? centimetres ? "; if the file is in centimetres: <mesh scale=\"0.01 0.01 0.01\">"
-                          : "; if the file is in millimetres: <mesh scale=\"0.001 0.001 0.001\">"
-            : "; lengths are in metres";
+    const bool mesh = object_.kind == ObjectModel::Kind::kMesh;
+    const std::string units = radius > kMax ? UnitHint(radius, kMin, kMax) : "";
+    const std::string fix = mesh || units.empty() ? units : "; lengths are in metres";
     problems_.Add(collisions_.front().geometry.line,
                   "{}: bounding radius [m] = {:.6g}; allowed {:g} .. {:g}{}", element_, radius,
                   kMin, kMax, fix);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include "core/hand/mesh_path.h"
@@ -27,9 +29,26 @@ TriangleMesh MeshOf(const UrdfGeometry& geometry) {
   std::error_code ignored;
   if (const std::string where = WherePackagesAre(geometry.mesh_name);
       !where.empty() && !std::filesystem::exists(geometry.mesh, ignored))
-    throw ModelError(
-        fmt::format("<mesh> filename = {}: file not found{}", Quoted(geometry.mesh_name), where));
+    throw ModelError(fmt::format("<mesh> filename = {}: file not found{}",
+                                 QuotedPath(geometry.mesh_name), where));
   return LoadClosedMesh(geometry.mesh, geometry.scale);
+}
+
+/// Gives the number `of` to box `first` and to all that hang together with it.
+void Spread(const std::vector<Eigen::AlignedBox3d>& boxes, std::size_t first, int of,
+            std::vector<int>* part) {
+  constexpr double kTouch = 1e-3;  // [m]
+  std::vector<std::size_t> open = {first};
+  (*part)[first] = of;
+  while (!open.empty()) {
+    const std::size_t i = open.back();
+    open.pop_back();
+    for (std::size_t k = 0; k < boxes.size(); ++k) {
+      if ((*part)[k] >= 0 || boxes[i].exteriorDistance(boxes[k]) > kTouch) continue;
+      (*part)[k] = of;
+      open.push_back(k);
+    }
+  }
 }
 
 }  // namespace
@@ -58,6 +77,28 @@ TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::str
     problems->Add(0, "the pieces have {} vertices; allowed are at most {}", whole.vertices.size(),
                   kMaxVertices);
   return whole;
+}
+
+Parts PartsOf(const std::vector<Vector3d>& vertices,
+              const std::vector<std::vector<Eigen::Vector3i>>& pieces) {
+  constexpr std::size_t kMost = 1000;  // each is held against each
+  if (pieces.size() > kMost) return {};
+  std::vector<Eigen::AlignedBox3d> boxes(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (const Eigen::Vector3i& t : pieces[i])
+      for (const int corner : t) boxes[i].extend(vertices[static_cast<std::size_t>(corner)]);
+  Parts parts;
+  parts.count = 0;
+  std::vector<int> part(pieces.size(), -1);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    if (part[i] < 0) Spread(boxes, i, parts.count++, &part);
+  if (parts.count < 2) return parts;
+  parts.gap = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      if (part[i] == 0 && part[k] != 0)
+        parts.gap = std::min(parts.gap, boxes[i].exteriorDistance(boxes[k]));
+  return parts;
 }
 
 }  // namespace regrasp

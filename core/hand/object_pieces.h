@@ -16,4 +16,14 @@ namespace regrasp {
 TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::string& element,
                         Problems* problems);
 
+/// Pieces that hang together: those whose boxes are no more than 1 mm apart. `gap`: least distance
+/// of the first part's boxes from the others' [m].
+struct Parts {
+  int count = 1;
+  double gap = 0;
+};
+/// One part where there are more than a thousand pieces.
+Parts PartsOf(const std::vector<Vector3d>& vertices,
+              const std::vector<std::vector<Eigen::Vector3i>>& pieces);
+
 }  // namespace regrasp

@@ -179,9 +179,11 @@ class Checker {
     if (name.empty()) return values.Add(node->GetLineNum(), "<mesh> filename is missing");
     std::string why;
     const auto [file, guess] = ResolveMesh(path_, name, &why);
-    if (!why.empty()) values.Add(node->GetLineNum(), "<mesh> filename = {}: {}", Quoted(name), why);
+    if (!why.empty())
+      values.Add(node->GetLineNum(), "<mesh> filename = {}: {}", QuotedPath(name), why);
     if (!guess.empty() && guesses_.insert(guess).second)
-      problems_->Warn(node->GetLineNum(), "", "<mesh> filename = " + Quoted(name) + ": " + guess);
+      problems_->Warn(node->GetLineNum(), "",
+                      "<mesh> filename = " + QuotedPath(name) + ": " + guess);
     node->SetAttribute("written", name.c_str());
     node->SetAttribute("filename", file.c_str());
   }

@@ -28,17 +28,36 @@ std::string Hint(const std::string& attribute, const std::vector<std::string>& w
   return count == 1 && words.size() > 1 ? "; one number" : "";
 }
 
-}  // namespace
-
-std::string Quoted(const std::string& text) {
+std::string WithoutControls(const std::string& text) {
   std::string shown;
   for (const char c : text)
     if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) shown += c;
+  return shown;
+}
+
+/// A byte of UTF-8 that is not a character's first.
+bool IsWithinCharacter(char c) { return (c & 0xC0) == 0x80; }
+
+}  // namespace
+
+std::string Quoted(const std::string& text) {
+  std::string shown = WithoutControls(text);
   constexpr std::size_t kMost = 60;
   if (shown.size() > kMost) {
     std::size_t end = kMost;
-    while (end > 0 && (shown[end] & 0xC0) == 0x80) --end;  // not within a UTF-8 character
+    while (end > 0 && IsWithinCharacter(shown[end])) --end;
     shown = shown.substr(0, end) + "...";
+  }
+  return "\"" + shown + "\"";
+}
+
+std::string QuotedPath(const std::string& path) {
+  std::string shown = WithoutControls(path);
+  constexpr std::size_t kMost = 80;
+  if (shown.size() > kMost) {
+    std::size_t begin = shown.size() - kMost;
+    while (begin < shown.size() && IsWithinCharacter(shown[begin])) ++begin;
+    shown = "..." + shown.substr(begin);
   }
   return "\"" + shown + "\"";
 }

@@ -19,6 +19,8 @@ inline constexpr double kMaxModelSize = 10;  ///< [m]; anything larger is a unit
 
 /// `text` shown in a message: quoted, cut to 60 characters, without control characters.
 std::string Quoted(const std::string& text);
+/// The same of a path, of which the last 80 characters are kept.
+std::string QuotedPath(const std::string& path);
 
 class UrdfValues {
  public:

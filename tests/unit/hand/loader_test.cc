@@ -299,9 +299,13 @@ TEST_F(LoaderTest, RefusesOpenAndInsideOutMeshes) {
   EditBall("<sphere radius=\"0.025\"/>", "<mesh filename=\"tetra.obj\"/>");
   Write("objects/tetra.obj",
         Replaced(Replaced(kTetrahedron, "f 2 3 4\n", ""), "f 1 3 2\n", "f 1 3 2\nf 1 2 3\n"));
-  ExpectRefused({"tetra.obj", "not closed", "two triangles"});
+  ExpectRefused({"tetra.obj", "not closed: 4 of 6 edges are open, the first at (0, 0.015, 0)",
+                 "two triangles", "Fill Holes"});
   Write("objects/tetra.obj", Replaced(kTetrahedron, "f 2 3 4\n", "f 2 4 3\n"));
-  ExpectRefused({"tetra.obj", "not closed"});
+  ExpectRefused({"tetra.obj",
+                 "mesh has no holes, but along 3 of 6 edges triangles are turned against their "
+                 "neighbours, the first at (0.015, 0.015, 0)",
+                 "Recalculate Outside"});
   Write("objects/tetra.obj",
         Replaced(
             Replaced(Replaced(Replaced(kTetrahedron, "f 1 3 2", "f 1 2 3"), "f 1 2 4", "f 1 4 2"),

@@ -103,6 +103,20 @@ TEST_F(PiecesTest, FacetsLieAboutTheRoundSurface) {
   }
 }
 
+TEST_F(PiecesTest, PartsFarFromEachOtherAreTold) {
+  const auto told = [&](double at) {
+    Of(Collisions({{fmt::format("xyz=\"{} 0 0\"", -at), "<box size=\"0.02 0.02 0.02\"/>"},
+                   {"", "<box size=\"0.02 0.02 0.02\"/>"},
+                   {"xyz=\"0 0 0.02\"", "<sphere radius=\"0.01\"/>"}}),
+       shape_);
+    ModelReport report;
+    LoadObjectUrdf(root_ / "objects/thing.urdf", shape_, &report);
+    return report.warnings.empty() ? "" : report.warnings.front().text;
+  };
+  EXPECT_EQ(told(0.0205), "") << "half a millimetre is a gap of rounding";
+  EXPECT_EQ(told(0.1), "2 parts that do not touch, 80 mm apart: one rigid body all the same");
+}
+
 TEST_F(PiecesTest, PrimitivesThatTouchAddUp) {
   // A dumb-bell of two balls and a box between them, which only touch it in a point.
   ObjectFacts facts;
@@ -189,7 +203,8 @@ TEST_F(PiecesTest, EveryPieceIsCheckedAndAllErrorsComeAtOnce) {
                    {"", "<mesh filename=\"gone.obj\"/>"}}));
     ADD_FAILURE() << "was not refused";
   } catch (const ModelError& error) {
-    for (const char* word : {"2 errors", "not closed", "gone.obj: mesh file not found"})
+    for (const char* word :
+         {"2 errors", "turned against their neighbours", "gone.obj: mesh file not found"})
       EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
   }
 }

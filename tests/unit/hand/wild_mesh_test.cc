@@ -116,21 +116,46 @@ TEST_F(WildTest, AnStlFilesCountIsHeldAgainstItsSize) {
             std::string::npos);
 }
 
-TEST_F(WildTest, AMeshInCentimetresIsToldSo) {
+/// The L as Wavefront text; lengths in `unit` [m].
+std::string EllIn(double unit) {
   std::string text, faces;
   int corner = 0;
   for (const Corners& corners : Ell())
     for (const Vector3d& p : corners) {
-      text += fmt::format("v {} {} {}\n", p.x() / 10, p.y() / 10, p.z() / 10);
+      const Vector3d v = p * 1e-3 / unit;
+      text += fmt::format("v {} {} {}\n", v.x(), v.y(), v.z());
       faces += fmt::format("{}{}", corner % 3 == 0 ? "\nf " : " ", corner + 1);
       ++corner;
     }
-  Write("objects/cm.obj", text + faces + "\n");
-  const std::string refusal = Refusal("<mesh filename=\"cm.obj\"/>");
-  const std::string scale = "scale=\"0.01 0.01 0.01\"";
-  EXPECT_NE(refusal.find("if the file is in centimetres: <mesh " + scale + ">"), std::string::npos)
-      << refusal;
-  ExpectEll(Load("<mesh filename=\"cm.obj\" " + scale + "/>"));
+  return text + faces + "\n";
+}
+
+TEST_F(WildTest, UnitsInWhichAMeshWouldBePlausibleAreNamed) {
+  const std::string mm = " in millimetres: <mesh scale=\"0.001 0.001 0.001\">",
+                    cm = " in centimetres: <mesh scale=\"0.01 0.01 0.01\">",
+                    inch = " in inches: <mesh scale=\"0.0254 0.0254 0.0254\">",
+                    begin = "; if the file is";
+  Write("objects/mm.obj", EllIn(1e-3));
+  Write("objects/cm.obj", EllIn(1e-2));
+  Write("objects/inch.obj", EllIn(0.0254));
+  for (const auto& [file, hint] :
+       {std::pair{"mm", begin + mm}, std::pair{"cm", begin + cm + "," + inch},
+        std::pair{"inch", begin + cm + "," + inch}}) {
+    const std::string refusal = Refusal(fmt::format("<mesh filename=\"{}.obj\"/>", file));
+    EXPECT_TRUE(refusal.ends_with(hint)) << refusal;
+  }
+  ExpectEll(Load("<mesh filename=\"cm.obj\" scale=\"0.01 0.01 0.01\"/>"));
+  ExpectEll(Load("<mesh filename=\"inch.obj\" scale=\"0.0254 0.0254 0.0254\"/>"));
+  EditHand("<box size=\"0.01 0.01 0.04\"/>", "<mesh filename=\"../objects/inch.obj\"/>");
+  ExpectRefused({"the mesh is 2.362 m long; allowed are at most 1 m; if the file is in centimetres",
+                 inch.c_str()});
+}
+
+TEST_F(WildTest, OfALongMeshPathTheEndIsTold) {
+  const std::string path =
+      "package://a_hand_description/" + std::string(60, 'm') + "/collision/the_fingertip.stl";
+  EditHand("<box size=\"0.01 0.01 0.04\"/>", "<mesh filename=\"" + path + "\"/>");
+  ExpectRefused({"mm/collision/the_fingertip.stl\": file not found"});
 }
 
 TEST_F(WildTest, WhatGitLeavesOfAMeshThatWasNotFetchedIsNamed) {
