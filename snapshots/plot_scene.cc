@@ -142,8 +142,27 @@ std::vector<LegendGroup> Legends(const Frame& frame, const HandModel& hand, cons
   return {{"contact force, true", fingers, kTop + 4}, {"", arrow}, {"balance", balance}};
 }
 
-const std::array<Side, 2> kSides = {Side{{0.22, -1, 0.16}, "from the palm's side"},
-                                    Side{{1, -0.32, 0.12}, "from the thumb's side"}};
+/// 1 or -1: where the thumb of the stretched hand points along x, to +x on a right hand; 0 where no
+/// finger is called so, or it points to neither side.
+double ThumbSide(const HandModel& hand) {
+  constexpr double kBeside = 5e-3;  // [m]
+  const auto thumb = std::ranges::find(hand.fingers, "thumb", &Finger::name);
+  if (thumb == hand.fingers.end() || hand.num_fingers() < 2) return 0;
+  KinematicsData kinematics;
+  ForwardKinematics(hand, JointVector::Zero(hand.num_joints()), &kinematics);
+  double others = 0, own = 0;
+  for (int f = 0; f < hand.num_fingers(); ++f)
+    (f == thumb - hand.fingers.begin() ? own : others) += FingertipCentre(hand, kinematics, f).x();
+  const double beside = own - others / (hand.num_fingers() - 1);
+  return std::abs(beside) < kBeside ? 0 : std::copysign(1, beside);
+}
+
+std::array<Side, 2> SidesOf(const HandModel& hand) {
+  const double thumb = ThumbSide(hand);
+  return {Side{{0.22, -1, 0.16}, "from the palm's side"},
+          Side{{thumb < 0 ? -1.0 : 1.0, -0.32, 0.12},
+               thumb == 0 ? "from +x" : "from the thumb's side"}};
+}
 
 /// Up on the sheet is up in the world where the direction of view allows it, else towards the
 /// fingers.
@@ -179,10 +198,11 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
       middle += finger.true_tip_W / static_cast<double>(frame.fingers.size());
   }
   const std::array<Box, 2> boxes = TwoBoxes(*canvas, layout, canvas->narrow() ? top : kTop, 24);
-  for (std::size_t i = 0; i < kSides.size(); ++i) {
+  const std::array<Side, 2> sides = SidesOf(hand);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
     const Box& box = boxes[i];
-    SceneView view(canvas, box, bodies, kSides[i].to_viewer,
-                   UpFor(kSides[i].to_viewer, frame.gravity_W), detail);
+    SceneView view(canvas, box, bodies, sides[i].to_viewer,
+                   UpFor(sides[i].to_viewer, frame.gravity_W), detail);
     canvas->Clip(box);
     for (const Frame::Contact& contact : frame.contacts)
       view.Force(contact.p_WC, contact.force_W, forces.metres_per_newton(),
@@ -195,7 +215,7 @@ void DrawScene(Canvas* canvas, const Frame& frame, const HandModel& hand, const 
     view.Scales(middle, forces.scale(), forces.metres_per_newton());
     canvas->Unclip();
     DrawBorder(canvas, box);
-    canvas->Text({box.x + box.width / 2, box.y + 20}, kSides[i].name,
+    canvas->Text({box.x + box.width / 2, box.y + 20}, sides[i].name,
                  {.size = 18, .colour = kGrey, .align_x = AlignX::kCentre, .halo = 2});
   }
 }

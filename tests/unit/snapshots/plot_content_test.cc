@@ -24,6 +24,33 @@ TEST_F(Snapshots, SceneOfAnotherHandIsRefused) {
   EXPECT_NE(error.find(File("scene.png")), std::string::npos) << error;
 }
 
+/// Where a text stands in an SVG, the last time it does.
+double PlaceOf(const std::string& svg, const std::string& text) {
+  const std::size_t at = svg.rfind(">" + text + "</text>");
+  const std::size_t begin = svg.rfind("<text", at), x = svg.find("translate(", begin);
+  EXPECT_LT(x, at) << text;
+  return x < at ? std::stod(svg.substr(x + 10)) : 0;
+}
+
+// The first finger stands at -x, the third at +x; the second touches at +y, the third at -y.
+TEST_F(Snapshots, TheThumbsSideIsWhereTheThumbIs) {
+  const auto drawn = [&](int thumb, const std::string& name) {
+    HandModel hand = hand_;
+    hand.fingers[1].name = "far_y";
+    hand.fingers[static_cast<std::size_t>(thumb)].name = name;
+    PlotScene(run_.back(), hand, object_, {}, File("side.svg"));
+    return Bytes(File("side.svg"));
+  };
+  const std::string right = drawn(2, "thumb"), left = drawn(0, "thumb"), none = drawn(0, "digit");
+  for (const std::string& svg : {right, left})
+    EXPECT_NE(svg.find("from the thumb's side"), std::string::npos);
+  EXPECT_EQ(none.find("thumb"), std::string::npos);
+  EXPECT_NE(none.find(">from +x<"), std::string::npos);
+  EXPECT_GT(PlaceOf(right, "far_y"), PlaceOf(right, "thumb"));
+  EXPECT_GT(PlaceOf(none, "far_y"), PlaceOf(none, "three"));
+  EXPECT_LT(PlaceOf(left, "far_y"), PlaceOf(left, "three"));
+}
+
 TEST_F(Snapshots, FewTrialsArePointsInsteadOfABox) {
   ExperimentPicture picture;
   picture.title = "Few";
