@@ -74,7 +74,9 @@ Shown Load(const std::string& name, LoadOptions options) {
         throw error;
       }
     }
-    shown.warnings.clear();  // they say what the refusals say
+    std::erase_if(shown.warnings, [](const std::string& warning) {  // what the refusals say
+      return warning.ends_with("taken because of --force");
+    });
   }
   return shown;
 }
