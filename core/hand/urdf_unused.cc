@@ -16,12 +16,15 @@ std::string NameOf(const XMLElement& node) {
   return node.Attribute("name") ? node.Attribute("name") : "";
 }
 
-/// What a <contact> holds: the names of its elements, that of friction with its value.
+/// What a <contact> holds: the names of its first elements, that of friction with its value.
 std::string Contents(const XMLElement& contact) {
   std::string text;
+  int count = 0;
+  constexpr int kMost = 8;
   for (const XMLElement* part = contact.FirstChildElement(); part != nullptr;
        part = part->NextSiblingElement()) {
-    text += (text.empty() ? "" : ", ") + std::string(part->Name());
+    if (++count > kMost) return text + ", ...";
+    text += (text.empty() ? "" : ", ") + std::string(part->Name()).substr(0, 40);
     if (part->Name() == std::string_view("lateral_friction") && part->Attribute("value"))
       text += " = " + Quoted(part->Attribute("value"));
   }

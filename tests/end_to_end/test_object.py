@@ -78,6 +78,13 @@ class Shown(Case):
         cause, _ = self.refused(74, "object", "show", "egg", "-o", self.dir / "nowhere" / "ball.png")
         self.assertIn("nowhere", cause)
 
+    def test_what_is_told_of_a_file_is_told_when_it_is_refused_too(self):
+        path = self.ball(collisions=SPHERE.format(x=0, r=0.01) + SPHERE.format(x=0.1, r=0.01), moment=2)
+        shown = json.loads(self.expect(1, "--json", "object", "show", path).stdout)
+        self.assertGreater(len(shown["refusals"]), 0)
+        (told,) = shown["warnings"]
+        self.assertIn("2 parts that do not touch, 80 mm apart", told)
+
     def test_what_is_no_object_is_refused(self):
         cause, hint = self.refused(6, "object", "show", "eg")
         self.assertIn("available are", cause)
