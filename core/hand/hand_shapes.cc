@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kGoodFit = 1e-3;   // [m]; a fingertip beyond it is said
 constexpr double kLargestLink = 1;  // [m]; a larger mesh has another unit
 
 void Pose(const Isometry3d& X, Shape* shape) {
@@ -56,10 +55,10 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
         shape.a_L = shape.b_L = X.translation();
         break;
       case UrdfGeometry::Kind::kCylinder:
-        if (!fingertip && geometry.length < geometry.radius) {  // round ends would make it a ball
+        if (geometry.length < geometry.radius) {  // round ends would make it a ball
           TriangleMesh disc = CylinderMesh(geometry.radius, geometry.length / 2);
           for (Vector3d& v : disc.vertices) v = X * v;
-          shape = Fitted(in, geometry, disc, "<cylinder>", false);
+          shape = Fitted(in, geometry, disc, "<cylinder>", fingertip);
           break;
         }
         shape.radius = geometry.radius;
@@ -182,13 +181,17 @@ Shape HandShapes::Fitted(const UrdfLink& in, const UrdfGeometry& geometry,
   const FittedShape fit = fingertip ? FitFingertip(posed, toward) : FitShape(posed);
   if (report_)
     report_->fits.push_back({in.name, name, fit.kind, fit.error_m, fit.rms_m, fingertip});
+  const std::string what = name.starts_with('<') ? name.substr(1, name.size() - 2) : "mesh";
   if (fingertip && fit.error_m > kGoodFit)
     problems_->Warn(
         geometry.line, LinkElement(in.name),
         fmt::format("the fingertip's {} differs from its {} by up to {:.2g} mm (rms {:.2g} mm); "
-                    "within 1 mm contacts would be those of the {}",
-                    fit.kind, name == "<box>" ? "box" : "mesh", 1e3 * fit.error_m, 1e3 * fit.rms_m,
-                    name == "<box>" ? "box" : "mesh"));
+                    "within 1 mm contacts would be those of the {}{}",
+                    fit.kind, what, 1e3 * fit.error_m, 1e3 * fit.rms_m, what,
+                    fit.within ? fmt::format("; no round end meets it, so it is one within it, of "
+                                             "{:.3g} mm radius",
+                                             1e3 * fit.shape.radius)
+                               : ""));
   return fit.shape;
 }
 

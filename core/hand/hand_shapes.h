@@ -22,9 +22,9 @@ class HandShapes {
              ModelReport* report)
       : file_(file), options_(options), problems_(problems), report_(report) {}
 
-  /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh, or
-  /// where there are boxes only the farthest of them, is fitted by the capsule or sphere that its
-  /// far end needs; else a mesh is fitted by what comes nearest to all of it.
+  /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh, a
+  /// disc, or where there are boxes only the farthest of them, is fitted by the capsule or sphere
+  /// that its far end needs; else a mesh or a disc is fitted by what comes nearest to all of it.
   std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip);
 
  private:

@@ -33,7 +33,7 @@ struct ShapeFit {
   std::string shape;       ///< "sphere", "capsule" or "box"
   double error_m = 0;      ///< largest distance of a point of the mesh from the shape's surface
   double rms_m = 0;        ///< root mean square of the same
-  bool fingertip = false;  ///< measured over the rounded end that touches objects
+  bool fingertip = false;  ///< over the round end that touches, or all where none fits
 };
 
 struct ModelReport {

@@ -6,11 +6,15 @@
 #include <cmath>
 #include <vector>
 
+#include "core/hand/hull_support.h"
+
 namespace regrasp {
 namespace {
 
 constexpr std::size_t kSamples = 3000;
-constexpr double kSphere = 0.05;  // a segment shorter than this share of the radius makes a sphere
+constexpr double kSphere = 0.05;   // a segment shorter than this share of the radius makes a sphere
+constexpr double kThicker = 1.35;  // than its link a fingertip may be: round ends meet boxes
+                                   // between their faces and their edges
 
 struct Sample {
   Vector3d p;
@@ -195,6 +199,61 @@ FittedShape FitBox(const Samples& samples, const Matrix3d& axes) {
   return fit;
 }
 
+/// How far the mesh is outside of a capsule.
+double LeftOut(const TriangleMesh& mesh, const Shape& shape) {
+  const Capsule capsule = {shape.a_L, shape.b_L, shape.radius};
+  double most = 0;
+  for (const Vector3d& v : mesh.vertices) most = std::max(most, capsule.Distance(v));
+  return most;
+}
+
+/// The thickest capsule along `axis` from end to end of the mesh, about `middle`, of at most
+/// `radius`, that sticks out of the hull by no more than kGoodFit.
+Shape Within(const TriangleMesh& mesh, const HullSupport& hull, const Vector3d& middle,
+             const Vector3d& axis, double radius) {
+  constexpr double kLeast = 1e-4;  // [m]
+  double low = 0, high = 0;
+  for (const Vector3d& v : mesh.vertices) {
+    low = std::min(low, (v - middle).dot(axis));
+    high = std::max(high, (v - middle).dot(axis));
+  }
+  Shape shape;
+  for (shape.radius = std::max(kLeast, radius);; shape.radius *= 0.95) {
+    shape.a_L = middle + std::min(0.0, low + shape.radius) * axis;
+    shape.b_L = middle + std::max(0.0, high - shape.radius) * axis;
+    if (shape.radius <= kLeast || hull.Beyond(shape) <= kGoodFit) return shape;
+  }
+}
+
+/// Such a capsule along the axis that leaves the smallest error, which is that of all of the
+/// surface, both ways: how far the link is outside of the capsule, and the capsule of the link.
+/// `samples`: of equal weight.
+FittedShape FitWithin(const Samples& samples, const TriangleMesh& mesh, const HullSupport& hull,
+                      const Matrix3d& axes, const Vector3d& toward) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& v : mesh.vertices) box.extend(Vector3d(axes.transpose() * v));
+  int thin = 0;
+  const double half = box.sizes().minCoeff(&thin) / 2;
+  const Vector3d across = axes.col(thin);
+  FittedShape best;
+  for (const Vector3d& along :
+       {toward, TangentPart(toward, across), Vector3d(axes.col((thin + 1) % 3)),
+        Vector3d(axes.col((thin + 2) % 3))}) {
+    if (along.norm() < 1e-3) continue;  // the thin side is ahead
+    const Shape shape = Within(mesh, hull, axes * box.center(), along.normalized(), half);
+    FittedShape fit = ToShape(samples, {shape.a_L, shape.b_L, shape.radius});
+    fit.error_m = std::max({fit.error_m, hull.Beyond(fit.shape), LeftOut(mesh, fit.shape)});
+    if (best.kind.empty() || fit.error_m < best.error_m - 1e-6) best = fit;
+  }
+  best.within = true;
+  return best;
+}
+
+const FittedShape& Nearest(const std::vector<FittedShape>& fits) {
+  return *std::min_element(fits.begin(), fits.end(),
+                           [](const auto& a, const auto& b) { return a.rms_m < b.rms_m; });
+}
+
 }  // namespace
 
 FittedShape FitShape(const TriangleMesh& mesh) {
@@ -206,8 +265,7 @@ FittedShape FitShape(const TriangleMesh& mesh) {
   std::vector<FittedShape> fits = {FitBox(samples, Matrix3d::Identity()), FitBox(samples, axes)};
   for (int k = 0; k < 3; ++k)
     fits.push_back(ToShape(samples, Refine(samples, Around(samples, centre, axes.col(k)))));
-  return *std::min_element(fits.begin(), fits.end(),
-                           [](const auto& a, const auto& b) { return a.rms_m < b.rms_m; });
+  return Nearest(fits);
 }
 
 FittedShape FitFingertip(const TriangleMesh& mesh, const Vector3d& toward) {
@@ -215,6 +273,8 @@ FittedShape FitFingertip(const TriangleMesh& mesh, const Vector3d& toward) {
   Vector3d centre;
   Matrix3d axes;
   Principal(samples, &centre, &axes);
+  const HullSupport hull(mesh.vertices, axes);
+  const FittedShape within = FitWithin(samples, mesh, hull, axes, toward);
   double end = 0, width = 0;
   for (const Sample& s : samples) {
     end = std::max(end, (s.p - centre).dot(toward));
@@ -227,8 +287,13 @@ FittedShape FitFingertip(const TriangleMesh& mesh, const Vector3d& toward) {
   std::vector<Vector3d> starts = {toward, axes.col(0), axes.col(1), axes.col(2)};
   for (const Vector3d& axis : starts)
     fits.push_back(ToShape(samples, Refine(samples, Around(samples, centre, axis))));
-  FittedShape best = *std::min_element(
-      fits.begin(), fits.end(), [](const auto& a, const auto& b) { return a.rms_m < b.rms_m; });
+  const double most = kThicker * hull.WidthAcross(toward) / 2;
+  std::erase_if(fits, [&](const FittedShape& fit) {
+    return fit.shape.radius > most ||
+           hull.BeyondAhead(fit.shape, toward) > std::max(kGoodFit, fit.error_m) ||
+           (fit.error_m > kGoodFit && LeftOut(mesh, fit.shape) > fit.shape.radius);
+  });
+  FittedShape best = fits.empty() ? within : Nearest(fits);
   if (best.shape.a_L.dot(toward) > best.shape.b_L.dot(toward))
     std::swap(best.shape.a_L, best.shape.b_L);
   return best;
