@@ -35,6 +35,10 @@ const UrdfCollision* FarthestIfBoxes(const UrdfLink& in) {
   return farthest;
 }
 
+double HalfWidth(const Shape& shape) {
+  return shape.kind == Shape::Kind::kBox ? shape.half_extents.minCoeff() : shape.radius;
+}
+
 bool IsFile(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
@@ -82,6 +86,10 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
     }
     shapes.push_back(shape);
   }
+  for (const Shape& shape : shapes) {
+    double& half_width = half_widths_[in.name];
+    half_width = std::max(half_width, HalfWidth(shape));
+  }
   return shapes;
 }
 
@@ -114,6 +122,16 @@ fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {
   return beside;
 }
 
+const UrdfLink* HandShapes::Before(const UrdfLink& in) const {
+  const UrdfLink* link = &in;
+  while (link->parent_joint >= 0) {
+    const auto joint = static_cast<std::size_t>(link->parent_joint);
+    link = &file_.links[static_cast<std::size_t>(file_.joints[joint].parent)];
+    if (link->parent_joint >= 0 && half_widths_.contains(link->name)) return link;
+  }
+  return nullptr;
+}
+
 Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
   Vector3d end = Vector3d::Zero();
   for (const int j : in.child_joints) {
@@ -122,14 +140,19 @@ Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
   }
   // Links of hands are some 3.5 times as long as they are thick.
   constexpr double kSlender = 0.28, kLeast = 4e-3, kMost = 12e-3;
+  const UrdfLink* before = end.isZero() ? Before(in) : nullptr;
   Shape shape;
-  shape.radius = std::clamp(kSlender * end.norm(), kLeast, kMost);
+  shape.radius =
+      std::clamp(before ? half_widths_.at(before->name) : kSlender * end.norm(), kLeast, kMost);
   if (end.norm() > shape.radius) shape.b_L = end * (1 - shape.radius / end.norm());
-  problems_->Warn(
-      geometry.line, LinkElement(in.name),
-      fmt::format("<mesh> filename = {}: not found; a capsule of {:.3g} mm radius and {:.3g} mm "
-                  "segment in its place",
-                  QuotedPath(geometry.mesh_name), 1e3 * shape.radius, 1e3 * shape.b_L.norm()));
+  std::string taken = fmt::format("a ball of {:.3g} mm radius", 1e3 * shape.radius);
+  if (shape.b_L != shape.a_L)
+    taken = fmt::format("a capsule of {:.3g} mm radius and {:.3g} mm segment", 1e3 * shape.radius,
+                        1e3 * shape.b_L.norm());
+  if (before) taken += ", about as thick as " + LinkElement(before->name) + ",";
+  problems_->Warn(geometry.line, LinkElement(in.name),
+                  fmt::format("<mesh> filename = {}: not found; {} in its place",
+                              Quoted(geometry.mesh_name), taken));
   return shape;
 }
 

@@ -36,8 +36,11 @@ class HandShapes {
   /// The file named, or with fill_missing_meshes one of its name in a directory beside it; empty
   /// where there is none.
   std::filesystem::path Find(const UrdfLink& in, const UrdfGeometry& geometry);
-  /// A capsule from the link's frame to the farthest frame of its children.
+  /// A capsule from the link's frame to the farthest frame of its children; where there is none, a
+  /// ball as thick as the link before.
   Shape Filled(const UrdfLink& in, const UrdfGeometry& geometry);
+  /// The link towards the root, but not the root, that has shapes; null where there is none.
+  const UrdfLink* Before(const UrdfLink& in) const;
   const TriangleMesh* Mesh(const std::filesystem::path& file, const Vector3d& scale);
 
   const UrdfFile& file_;
@@ -45,6 +48,7 @@ class HandShapes {
   Problems* problems_;
   ModelReport* report_;
   std::map<std::string, TriangleMesh> meshes_;  // by file and scale: hands repeat them
+  std::map<std::string, double> half_widths_;   // of the thickest shape, by link [m]
 };
 
 }  // namespace regrasp

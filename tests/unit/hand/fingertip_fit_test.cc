@@ -1,4 +1,4 @@
-/// Fingertips that no round end meets.
+/// Fingertips that no round end meets, and those whose mesh is not there.
 
 #include <gtest/gtest.h>
 
@@ -91,6 +91,20 @@ TEST_F(FingertipFileTest, ADiscIsNoBall) {
   const std::string warning = Warning();
   EXPECT_NE(warning.find("differs from its cylinder by up to 18 mm"), std::string::npos) << warning;
   EXPECT_NEAR(loaded_.hand.fingers[0].tip_radius, 0.002, 1e-4);
+}
+
+TEST_F(FingertipFileTest, AMissingLastLinkIsAsThickAsTheOneBefore) {
+  Write("hands/mini.urdf",
+        Replaced(Replaced(kHandUrdf, kTip, R"(<geometry><mesh filename="gone.stl"/>)"),
+                 R"(<box size="0.01 0.01 0.04"/>)", R"(<box size="0.018 0.018 0.04"/>)"));
+  LoadOptions options;
+  options.fill_missing_meshes = true;
+  const std::string warning = Warning(options);
+  EXPECT_NE(warning.find("a ball of 9 mm radius, about as thick as link \"upper\", in its "
+                         "place"),
+            std::string::npos)
+      << warning;
+  EXPECT_DOUBLE_EQ(loaded_.hand.fingers[0].tip_radius, 0.009);
 }
 
 }  // namespace
