@@ -236,7 +236,9 @@ class Methods:
         Returns tick, time_s, criterion, stability, stability_measure, threshold, load_margin_n, measures: [NAME]
             and the value of each by its name, torque_scale_m (mean distance of the contacts from the object's
             centre; torques are divided by it), fingers: {NAME: {manipulability, load_margin_without_n,
-            joint_limit_margin_rad}}; measures and margins are null while no finger that holds is in contact.
+            joint_limit_margin_rad}}, exploration (null, or of the one that runs: finger, criterion, cycle, phi,
+            gradient_norm_1_m, gradient_threshold_1_m); measures and margins are null while no finger that holds is
+            in contact.
         """
         return self._ask("quality", {"measures": measures})
 
@@ -339,7 +341,8 @@ class Methods:
     def truth(self) -> dict:
         """What only the simulator knows.
         Returns tick, time_s, object {p_WO_m, q_WO_wxyz, v_m_s, w_rad_s, mass_kg, friction}, contacts [{link,
-            finger, p_WC_m, normal_W, force_W_n, depth_m}], gravity_W_m_s2.
+            finger, p_WC_m, normal_W, force_W_n, depth_m}], fingers: {NAME: {in_contact, manipulability, p_WC_m,
+            p_WF_m (of the fingertip)}}, gravity_W_m_s2, stand_in (it holds the object before the fingers do).
         """
         return self._ask("truth", {})
 
