@@ -48,7 +48,8 @@ enum class Marker : std::uint8_t {
   kCross,
   kPlus,
   kStar,
-  kRing
+  kRing,
+  kHexagon
 };
 
 /// Look of one finger; `finger` is its index in the hand model.

@@ -108,7 +108,9 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     const auto begin = std::find_if(phi.begin(), phi.end(), valid);
     const auto end = std::find_if(phi.rbegin(), phi.rend(), valid);
     if (begin == phi.end()) continue;
-    LegendEntry gain{fmt::format("{:.2f} → {:.2f}", *begin, *end), {}, PenOfRun(i).colour, true};
+    const char* lost = end == phi.rbegin() ? "" : ", contact lost";
+    LegendEntry gain{
+        fmt::format("{:.2f} → {:.2f}{}", *begin, *end, lost), {}, PenOfRun(i).colour, true};
     if (canvas.narrow()) gain.text = runs[i].label + " " + gain.text;
     gains.push_back(std::move(gain));
   }

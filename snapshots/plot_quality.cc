@@ -38,22 +38,24 @@ BandLook LookOfObjective(const HandModel& hand, int value) {
           stability ? Tint(colour, 0.25) : Tint(colour, 0.6), FingerName(hand, finger)};
 }
 
-/// "  1.21 → 1.87": noise-free manipulability over the finger's last exploration; empty without
-/// one.
+/// "  1.21 → 1.87": noise-free manipulability over the finger's last exploration, and whether it
+/// ended without a contact; empty without one.
 std::string Gain(std::span<const Frame> frames, int finger) {
   double first = kNoValue, last = kNoValue;
-  bool exploring = false;
+  bool exploring = false, lost = false;
   for (const Frame& frame : frames) {
     const bool now = ExploringFinger(frame) == finger;
     if (now && !exploring) first = last = kNoValue;
     if (now) {
       const double phi = TrueManipulability(frame, finger);
-      if (std::isfinite(phi)) last = phi;
+      lost = !std::isfinite(phi);
+      if (!lost) last = phi;
       if (!std::isfinite(first)) first = phi;
     }
     exploring = now;
   }
-  return std::isfinite(last) ? fmt::format("  {:.2f} → {:.2f}", first, last) : "";
+  return std::isfinite(last) ? fmt::format("  {:.2f} → {:.2f}{}", first, last, lost ? ", lost" : "")
+                             : "";
 }
 
 // Places of legends.

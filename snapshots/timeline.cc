@@ -33,15 +33,15 @@ std::optional<EventLook> LookOfEvent(const Event& event) {
     case EventKind::kFault:
       return EventLook{"fault", Marker::kStar};
     case EventKind::kNoise:
-      return EventLook{"noise changed", Marker::kSquare};
+      return EventLook{"noise, or its seed, changed", Marker::kSquare};
     case EventKind::kParameter:
-      return EventLook{"parameter changed", Marker::kDiamond};
+      return EventLook{"parameter changed", Marker::kHexagon};
     case EventKind::kFriction:
       return EventLook{"friction felt", Marker::kRing};
     case EventKind::kPush:
       return EventLook{"push", Marker::kUp};
     case EventKind::kReset:
-      return EventLook{"reset", Marker::kStar};
+      return EventLook{"reset or restored", Marker::kStar};
     case EventKind::kStandIn:
       return EventLook{"stand-in lets go", Marker::kDisc};
     default:
@@ -69,10 +69,19 @@ std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
   return history.subspan(static_cast<std::size_t>(first - history.begin()));
 }
 
+/// Of a branch with another seed both: neither makes the picture again alone.
+std::string SeedsOf(std::span<const Frame> frames) {
+  std::string text = fmt::format("seed {}", frames.front().seed);
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    if (frames[i].seed != frames[i - 1].seed)
+      text += fmt::format(", from {:.2f} s on {}", frames[i].time_s, frames[i].seed);
+  return text;
+}
+
 std::vector<std::string> FactList(std::span<const Frame> frames, const HandModel& hand,
                                   const std::string& object, const std::string& changed) {
   const Frame& last = frames.back();
-  return {fmt::format("seed {}", last.seed),
+  return {SeedsOf(frames),
           fmt::format("noise {}", NoiseName(last.noise)),
           "hand " + hand.name,
           fmt::format("{}({:.0f} g, µ {:.2g})", object.empty() ? "" : "object " + object + " ",

@@ -139,7 +139,7 @@ std::vector<CommandSpec> ToolCommands() {
          .flags = "",
          .metavar = "FILE",
          .help =
-             R"({"contacts": [{"position_m": [3], "normal": [3] inward, "mu": x}], "torque_scale_m": r, "cone_edges": m, "weight_n": [3]}; - reads standard input)",
+             R"({"contacts": [{"position_m": [3], "normal": [3] inward, "mu": x, "torsional_mu": y}], "normals": "outward", "torque_scale_m": r, "cone_edges": m, "weight_n": [3], "max_force_n": f}, most may be left out; or what contacts --json prints; - reads standard input. load_margin_unbounded: without max_force_n a force-closure grasp bears every load)",
          .required = true}},
        Evaluate},
       {"call",
