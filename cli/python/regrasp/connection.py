@@ -3,6 +3,7 @@
 import json
 import select
 import socket
+import threading
 
 
 class Error(RuntimeError):
@@ -46,7 +47,10 @@ class Job:
 
 
 class Connection:
-    """A connection to the socket `path`. Raises OSError when nobody listens there."""
+    """A connection to the socket `path`. Raises OSError when nobody listens there.
+
+    Threads may share it: their calls come one after the other, and each gets its own answer. A call that waits (`wait`
+    of a Job) holds up those of the other threads; who wants to cancel it meanwhile needs a connection of his own."""
 
     def __init__(self, path):
         self.path = str(path)
@@ -60,6 +64,8 @@ class Connection:
         self._waiting.register(self._socket, select.POLLIN)
         self._received = b""  # what follows the last line that was read
         self._last_id = 0
+        # Of one thread at a time. A signal's handler that calls while its own thread does is refused by poll().
+        self._turn = threading.RLock()
 
     def close(self):
         self._socket.close()
@@ -83,12 +89,13 @@ class Connection:
 
     def call(self, method, /, **params):
         """The result of one request. Raises Error when the daemon refuses it; nothing has changed then."""
-        self._last_id += 1
-        request = {"jsonrpc": "2.0", "id": self._last_id, "method": method, "params": params}
-        self._socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
-        # Passed over: notifications of a subscription made with call(), answers to calls that were interrupted.
-        while "id" not in (answer := self._read()) or answer["id"] not in (None, self._last_id):
-            pass
+        with self._turn:
+            self._last_id += 1
+            request = {"jsonrpc": "2.0", "id": self._last_id, "method": method, "params": params}
+            self._socket.sendall(json.dumps(request, allow_nan=False).encode() + b"\n")
+            # Passed over: notifications of a subscription made with call(), answers to calls that were interrupted.
+            while "id" not in (answer := self._read()) or answer["id"] not in (None, self._last_id):
+                pass
         if "error" in answer:
             raise Error(method, answer["error"])
         return answer["result"]

@@ -17,7 +17,8 @@ START_LIMIT_S = 60  # of wall clock, for a daemon to answer
 
 class Hand(Methods, Connection):
     """A connection with every method of the daemon. `daemon`: the private daemon that ends with it, or None: when it is
-    closed, when nobody has it any more, at the latest with the interpreter."""
+    closed, when nobody has it any more, at the latest with the interpreter. Threads may share it as they may a
+    Connection; `connect(hand.path)` makes another one to the same daemon."""
 
     def __init__(self, path, daemon=None):
         Connection.__init__(self, path)
