@@ -9,6 +9,7 @@ import threading
 import time
 import unittest
 
+from experiment_case import ExperimentCase
 from harness import BIN, HANG_S, SOURCE, Case, DaemonCase, FakeDaemon, environment
 
 os.environ["REGRASP_BIN_DIR"] = str(BIN)
@@ -129,6 +130,46 @@ class Interrupted(Case):
             self.assertNotEqual(os.getsid(hand._daemon._process.pid), os.getsid(0))
 
 
+class Threads(Case):
+    def test_each_gets_its_own_answers(self):
+        daemon = FakeDaemon(self.socket, {"describe": lambda asked: asked})
+        self.addCleanup(daemon.close)
+        wrong = []
+
+        def ask(hand, number):
+            for turn in range(300):
+                try:
+                    if (answer := hand.call("describe", asks=[number, turn])) != {"asks": [number, turn]}:
+                        wrong.append(answer)
+                except Exception as error:  # pylint: disable=broad-exception-caught
+                    wrong.append(error)
+        with regrasp.connect(self.socket) as hand:
+            threads = [threading.Thread(target=ask, args=(hand, number), daemon=True) for number in range(4)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join(HANG_S)
+                self.assertFalse(thread.is_alive())
+        self.assertEqual(wrong, [])
+
+    def test_streams_go_on_meanwhile(self):
+        with regrasp.start(seed=1, clock="continuous") as hand:
+            waits = threading.Thread(target=lambda: hand.grasp().done())
+            waits.start()
+            self.assertEqual(len(list(hand.watch("status", count=3))), 3)
+            waits.join(HANG_S)
+            self.assertEqual(hand.status()["state"], "holding")
+
+    def test_a_handler_that_calls_while_its_thread_waits_is_refused(self):
+        daemon = FakeDaemon(self.socket, {"job.wait": lambda _: None, "status": lambda _: {}})
+        self.addCleanup(daemon.close)
+        with regrasp.connect(self.socket) as hand:
+            signal.signal(signal.SIGALRM, lambda *_: hand.status())
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
+            with self.assertRaisesRegex(RuntimeError, "poll"):
+                regrasp.Job(hand, 1).wait()
+
+
 class LeftOpen(Case):
     """A hand that nobody closes: its daemon ends with the interpreter, however that ends."""
 
@@ -173,6 +214,32 @@ class LeftOpen(Case):
         with self.assertWarns(ResourceWarning):  # of its socket
             del hand
         self.assertIsNotNone(process.returncode)
+
+
+class Experiments(ExperimentCase):
+    def test_text_stays_text_however_it_looks(self):
+        (self.dir / "trials.csv").write_text(
+            "case,object,seed,error,converged,phi_final,angle_rad,state_hash,command\n"
+            "0.80,1e3,7,,true,0.25,,15815048586e0745,5\n"
+            "nan,inf,8,12,false,1e-07,,1234567890123456,6\n")
+        self.assertEqual(runs.trials(self.dir), [
+            {"case": "0.80", "object": "1e3", "seed": 7.0, "error": None, "converged": "true", "phi_final": 0.25, "angle_rad": None,
+             "state_hash": "15815048586e0745", "command": "5"},
+            {"case": "nan", "object": "inf", "seed": 8.0, "error": "12", "converged": "false", "phi_final": 1e-07, "angle_rad": None,
+             "state_hash": "1234567890123456", "command": "6"}])
+
+    def test_columns_are_what_the_experiments_wrote(self):
+        for name, words in (("exploration", ["--finger", "ring", "--rays", "0", "--set", "gait.margin_min=0.3,0.80"]), ("rotation", ["--turns", "0.05"])):
+            self.run_experiment(name, *words, "-n", "1", "--models-dir", SOURCE / "models", "-o", self.dir / name)
+        for name in ("exploration", "rotation"):
+            units = [json.loads(line) for line in (self.dir / name / "trials.jsonl").read_text().splitlines()]  # as they ended
+            written = [row for unit in sorted(units, key=lambda unit: unit["unit"]) for row in unit["rows"]]
+            for read, row in zip(runs.trials(self.dir / name), written, strict=True):
+                for column, value in row.items():
+                    text = value or None if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else value
+                    self.assertEqual(read[column], text, column)
+                    if isinstance(value, str):  # none is text by chance
+                        self.assertIn(column, runs._TEXT)
 
 
 class RunFiles(Case):

@@ -3,6 +3,7 @@
 import csv
 import json
 import pathlib
+import re
 import struct
 import zlib
 
@@ -81,24 +82,26 @@ def load(path):
     return run
 
 
+# Columns of experiments that are text, however it looks: a case may be called 0.80, a hash be 15815048586e0745.
+_TEXT = frozenset("case finger criterion estimator axis_W noise object outcome error reason state_hash command".split())
+_NUMBER = re.compile(r"-?\d+(\.\d+)?([eE][-+]?\d+)?", re.ASCII)
+
+
 def trials(directory):
-    """The rows of an experiment (`trials.csv`) as dicts: numbers as float, empty as None, all else as text."""
+    """The rows of an experiment (`trials.csv`) as dicts, empty cells as None. A column is numbers (float) where every
+    cell that is not empty is a decimal number, and text otherwise. Always text: case, finger, criterion, estimator,
+    axis_W, noise, object, outcome, error, reason, state_hash, command."""
     with open(pathlib.Path(directory) / "trials.csv", newline="", encoding="utf-8") as file:
-        return [{name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)]
+        reader = csv.DictReader(file)
+        rows = list(reader)
+    names = reader.fieldnames or []
+    numbers = {name for name in names if name not in _TEXT and all(_NUMBER.fullmatch(row[name] or "0") for row in rows)}
+    return [{name: (float(row[name]) if name in numbers else row[name]) if row[name] else None for name in names} for row in rows]
 
 
 def summary(directory):
     """What an experiment says (`summary.json`)."""
     return json.loads((pathlib.Path(directory) / "summary.json").read_text(encoding="utf-8"))
-
-
-def _value(text):
-    if text == "":
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def columns(rows):
