@@ -25,8 +25,9 @@ void GaitRecord::Look(SteppedDaemon* daemon) {
     const std::string criterion = Plain(exploration.at("criterion"));
     const bool stability = criterion == "stability";
     ++objective_[Plain(exploration.at("finger"))][stability ? "stability" : "manipulability"];
-    if (stability && exploration.at("phi").get<double>() > 0) {
-      without_next_sum_ += exploration.at("phi").get<double>();
+    const Json& phi = exploration.at("phi");  // null: not known yet
+    if (stability && phi.is_number() && phi.get<double>() > 0) {
+      without_next_sum_ += phi.get<double>();
       ++without_next_samples_;
     }
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "cli/print/print.h"
@@ -232,16 +233,17 @@ void DrawExploration(Screen* screen, const Box& box, const DashboardModel& model
   const Ink gain_ink = Number(to) >= from ? Ink::kGood : Ink::kWarn;
   const Box rest = Labelled(screen, box, " explore");
   if (active) {
-    const double norm = Number(At(now, "gradient_norm_1_m")),
-                 epsilon = Number(At(now, "gradient_threshold_1_m"));
-    PutItems(
-        screen, rest,
-        {{Plain(At(now, "finger")), Ink::kBold, 1},
-         {"on " + Plain(At(now, "criterion")), Ink::kDim, 4},
-         {"cycle " + Plain(At(now, "cycle")), Ink::kPlain, 3},
-         {fmt::format("gradient {:.1f} {} ε {:.1f}", norm, norm > epsilon ? ">" : "<", epsilon),
-          norm > epsilon ? Ink::kPlain : Ink::kGood, 2},
-         {gain, gain_ink, 0}});
+    const Json& gradient = At(now, "gradient_norm_1_m");  // null before the first cycle
+    const double epsilon = Number(At(now, "gradient_threshold_1_m")),
+                 norm = Number(gradient, std::numeric_limits<double>::infinity());
+    PutItems(screen, rest,
+             {{Plain(At(now, "finger")), Ink::kBold, 1},
+              {"on " + Plain(At(now, "criterion")), Ink::kDim, 4},
+              {"cycle " + Plain(At(now, "cycle")), Ink::kPlain, 3},
+              {fmt::format("gradient {} {} ε {:.1f}", Fixed(gradient, 1),
+                           norm > epsilon ? ">" : "<", epsilon),
+               norm > epsilon ? Ink::kPlain : Ink::kGood, 2},
+              {gain, gain_ink, 0}});
   } else if (job.is_object()) {
     const std::string end =
         At(job, "reason").is_string() ? Plain(At(job, "reason")) : Plain(At(job, "state"));

@@ -117,6 +117,11 @@ class GuidedSlide {
   /// Reloaded for exploration.reload_limit_s without touching: no surface to stand on.
   bool no_surface() const { return no_surface_; }
   double phi() const { return phi_; }
+  /// Whether phi has been sensed since the finger began to press with its exploring force.
+  bool phi_known() const {
+    return slid_ || (phase_ == Phase::kSettle && ticks_ > 0) ||
+           (phase_ > Phase::kSettle && phase_ < Phase::kReload);
+  }
   double phi_initial() const { return phi_initial_; }  ///< where sliding began
   double phi_final() const { return phi_final_; }      ///< where it ended
   bool on_stability() const { return on_stability_; }

@@ -28,7 +28,7 @@ Json List(const Vector& v) {
 Json Wxyz(const Quaterniond& q) { return List(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z())); }
 /// Of three numbers that are not known.
 Json Unknown3() { return {nullptr, nullptr, nullptr}; }
-Json Known(bool known, double x) { return known ? Json(Round(x)) : Json(); }
+Json Known(bool known, double x) { return known && !std::isnan(x) ? Json(Round(x)) : Json(); }
 
 /// An object with a member for each finger.
 Field PerFinger(const char* name, Type type, const char* meaning, Json (*get)(F)) {

@@ -4,6 +4,7 @@
 /// Trivially copyable, no pointers.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "core/common/fixed_vector.h"
@@ -61,9 +62,9 @@ struct ExplorationFrame {
   Criterion criterion = Criterion::kManipulability;
   bool on_stability = false;  ///< `switched`: stability is the objective at this tick
   int cycle = 0;
-  double phi = 0;
-  double gradient_norm = 0;  ///< |P R_WCᵀ grad phi| [1/m]
-  double epsilon = 0;        ///< its threshold [1/m]
+  double phi = std::nan("");            ///< NaN until the finger has begun to slide
+  double gradient_norm = std::nan("");  ///< |P R_WCᵀ grad phi| [1/m]; NaN before the first cycle
+  double epsilon = 0;                   ///< its threshold [1/m]
   Vector3d gradient_W = Vector3d::Zero();
   Vector3d velocity_W = Vector3d::Zero();  ///< wanted velocity of the contact, line 11 [m/s]
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 #include "core/gait/finger_gait.h"
@@ -14,6 +15,7 @@ namespace regrasp {
 namespace {
 
 Json Vector(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Json KnownOrNull(double x) { return std::isnan(x) ? Json() : Json(x); }
 Json Wxyz(const Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 Json FingerName(const HandModel& hand, int finger) {
@@ -151,8 +153,8 @@ Json QualityJson(const Frame& frame, const HandModel& hand, bool on_request) {
     exploration = {{"finger", FingerName(hand, e.finger)},
                    {"criterion", Name(e.criterion)},
                    {"cycle", e.cycle},
-                   {"phi", e.phi},
-                   {"gradient_norm_1_m", e.gradient_norm},
+                   {"phi", KnownOrNull(e.phi)},
+                   {"gradient_norm_1_m", KnownOrNull(e.gradient_norm)},
                    {"gradient_threshold_1_m", e.epsilon}};
   Json json = {{"tick", frame.tick},
                {"time_s", frame.time_s},

@@ -2,6 +2,7 @@
 (written here from their public documentation), every message is what its schema says, and the 3-D scene can be built
 from one file alone and is the true one."""
 
+import csv
 import json
 import math
 import struct
@@ -9,6 +10,7 @@ import sys
 import unittest
 
 from harness import DaemonCase, SOURCE
+from read_exports import read_npz
 
 sys.path.insert(0, str(SOURCE / "cli" / "python"))
 from regrasp.runs import messages  # pylint: disable=wrong-import-position
@@ -69,6 +71,31 @@ class Viewers(DaemonCase):
         self.assertIsNone(quality[0]["exploring"])
         self.assertIsNone(quality[0]["phi"])
         self.assertEqual(quality[-1]["exploring"], "ring")
+
+    def test_phi_is_null_until_the_finger_slides(self):
+        self.expect(0, "grasp")
+        self.expect(0, "step", 2600, "--wait")
+        path = self.json("record", "start", "run.mcap", "--rate", 100)["path"]
+        self.expect(0, "explore", "ring", "--max-cycles", 400)
+        self.expect(0, "step", 100, "--wait")
+        live = self.json("quality")["exploration"]
+        self.assertEqual((live["finger"], live["cycle"], live["phi"], live["gradient_norm_1_m"]), ("ring", 0, None, None))
+        self.expect(0, "step", 600, "--wait")
+        live = self.json("quality")["exploration"]
+        self.assertGreater(min(live["phi"], live["gradient_norm_1_m"]), 0)
+        self.expect(0, "record", "stop")
+        for name in ("phi", "gradient_norm_1_m"):
+            values = [m[name] for _, _, m in messages(path, "quality") if m["exploring"]]
+            began = next(i for i, value in enumerate(values) if value is not None)
+            self.assertGreater(began, 10)
+            self.assertNotIn(None, values[began:])
+            self.assertGreater(min(values[began:]), 0)
+            for form in ("csv", "npz"):
+                self.expect(0, "export", path, "--format", form, "-o", self.dir / name / form)
+            with open(self.dir / name / "csv" / "quality.csv", encoding="utf-8") as file:
+                cells = [row[name + " [1/m]" * (name != "phi")] for row in csv.DictReader(file) if row["exploring"]]
+            self.assertEqual([float(cell) if cell else None for cell in cells], values)
+            self.assertEqual(sum(math.isnan(x) for x in read_npz(self.dir / name / "npz")["quality." + name][1][-len(values):]), began)
 
     def test_the_scene_is_rebuilt_from_the_file_alone(self):
         path, truth = self.record()

@@ -55,8 +55,10 @@ bool Finite(const Frame& f) {
   for (const auto& c : f.contacts)
     ok = ok && c.p_WC.allFinite() && c.normal_W.allFinite() && c.force_W.allFinite();
   const StabilityFrame& s = f.stability;
-  for (const double x : {s.active, s.threshold, f.exploration.phi, f.exploration.gradient_norm})
-    ok = ok && std::isfinite(x);
+  ok = ok && std::isfinite(s.active) && std::isfinite(s.threshold);
+  const ExplorationFrame& e = f.exploration;
+  ok = ok && std::isfinite(e.gradient_norm) == (e.active && e.cycle > 0);
+  if (e.active && e.cycle > 0) ok = ok && std::isfinite(e.phi);
   for (const MeasureInfo& info : kMeasureTable) {
     if (info.cost == MeasureCost::kOnRequest) continue;
     const bool known = info.cost == MeasureCost::kTick || f.tick > kSpreadTicks;
@@ -101,6 +103,25 @@ TEST(Session, FramesAreFinite) {
   Check(1500, "stopping");
   run.Give(CommandType::kRelease);
   Check(2000, "released, the object falling");
+}
+
+TEST(Session, PhiOfAnExplorationIsUnknownUntilItsFingerSlides) {
+  SessionRun run;
+  ASSERT_TRUE(run.Grasp());
+  ASSERT_EQ(run.Explore(3, 1, 100).kind, Verdict::Kind::kAllowed);
+  int unknown = 0, known = 0;
+  while (run.session.job_running()) {
+    run.Tick();
+    const Frame frame = run.Snapshot();
+    const ExplorationFrame& e = frame.exploration;
+    if (!e.active) continue;
+    const bool slides = frame.fingers[3].role == FingerRole::kExplore;
+    EXPECT_EQ(std::isnan(e.phi), known == 0 && !slides) << frame.tick;
+    EXPECT_TRUE(std::isnan(e.phi) || e.phi > 0.1) << frame.tick;  // not 0 for what is not known
+    std::isnan(e.phi) ? ++unknown : ++known;
+  }
+  EXPECT_GT(unknown, 100);  // its load is taken from it
+  EXPECT_GT(known, 200);
 }
 
 TEST(Session, FrameTellsTheQualityOfTheGrasp) {

@@ -170,9 +170,9 @@ ExplorationFrame FrameOf(const GuidedSlide& slide, double epsilon) {
   frame.criterion = slide.request().criterion;
   frame.on_stability = slide.on_stability();
   frame.cycle = slide.cycles();
-  frame.phi = slide.phi();
+  if (slide.phi_known()) frame.phi = slide.phi();
   frame.epsilon = epsilon;
-  frame.gradient_norm = slide.algorithm().gradient_norm();
+  if (slide.cycles() > 0) frame.gradient_norm = slide.algorithm().gradient_norm();
   frame.gradient_W = slide.algorithm().gradient_W();
   frame.velocity_W = slide.algorithm().velocity_W();
   return frame;

@@ -213,6 +213,7 @@ TEST_F(Snapshots, NumbersThatAreNotFiniteLeaveGapsAndNothingElse) {
     run[i].stability.active = std::nan("");
     run[i].stability.load_margin = std::numeric_limits<double>::infinity();
     run[i].fingers[2].p_WC = Vector3d::Constant(std::nan(""));
+    run[i].exploration.criterion = Criterion::kStability;  // its phi is not known yet
   }
   for (const PlotRow& plot : kPlotTable)
     EXPECT_NO_THROW(Draw(plot, run, {}, File(plot.name, ".png"))) << plot.name;
