@@ -1,6 +1,7 @@
 #include "core/mcap/mcap_writer.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -165,10 +166,21 @@ void McapWriter::Finish() {
   file.AddRecord(kFooter, footer.data);
   file.data.append(kMagic.begin(), kMagic.end());
   Put(file.data);
+  const bool there = HasItsName();
   const int fd = fd_;
   fd_ = -1;
   ::fsync(fd);  // some file systems cannot
   if (::close(fd) != 0) throw McapError("cannot write " + path_ + ": " + std::strerror(errno));
+  if (!there)
+    throw McapError("cannot write " + path_ +
+                    ": the file was removed, renamed or replaced meanwhile");
+}
+
+bool McapWriter::HasItsName() const {
+  struct stat open {
+  }, named{};
+  return ::fstat(fd_, &open) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 void McapWriter::Put(std::string_view data) {

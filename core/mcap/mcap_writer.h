@@ -35,7 +35,8 @@ class McapWriter {
   void Write(std::uint16_t channel, std::uint64_t time, std::string_view json);
   /// Writes the open chunk: what was added is in the file now.
   void Flush();
-  /// Writes chunk, index and footer, and closes.
+  /// Writes chunk, index and footer, and closes. Throws McapError also where the file does not have
+  /// its name any more.
   void Finish();
 
   std::uint64_t bytes() const { return offset_; }  ///< in the file
@@ -50,6 +51,8 @@ class McapWriter {
     std::map<std::uint16_t, std::uint64_t> index_offsets;
   };
   void Put(std::string_view data);
+  /// Whether the name still is that of the open file.
+  bool HasItsName() const;
 
   std::string path_;
   int fd_ = -1;

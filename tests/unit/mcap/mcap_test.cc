@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "core/mcap/mcap_format.h"
@@ -64,6 +65,28 @@ TEST_F(Mcap, GivesBackWhatWasWritten) {
   ASSERT_EQ(found.size(), 30u);
   EXPECT_EQ(found[3], "b{\"i\":3}");
   EXPECT_EQ(found[29], "a{\"i\":29}");
+}
+
+TEST_F(Mcap, TellsThatTheFileLostItsName) {
+  const auto finish = [&](const std::function<void()>& change) {
+    McapWriter writer(path);
+    writer.Write(writer.AddChannel("a", "test.a", R"({"type":"object"})"), 1, "{}");
+    change();
+    writer.Finish();
+  };
+  EXPECT_THROW(finish([&] { fs::remove(path); }), McapError);
+  EXPECT_THROW(finish([&] { fs::rename(path, directory / "other.mcap"); }), McapError);
+  EXPECT_TRUE(ReadMcap(directory / "other.mcap", [](const McapMessage&) {}).complete);
+  EXPECT_THROW(finish([&] {
+                 fs::remove(path);
+                 Replace("another file");
+               }),
+               McapError);
+  fs::remove(path);
+  EXPECT_NO_THROW(finish([&] {  // moved, and a link leads there
+    fs::rename(path, directory / "there.mcap");
+    fs::create_symlink(directory / "there.mcap", path);
+  }));
 }
 
 TEST_F(Mcap, ReadsOnlyTheChunksThatAreWanted) {
