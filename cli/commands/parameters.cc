@@ -148,9 +148,7 @@ ExitCode Save(Context& context, const Invocation& invocation) {
     return kOk;
   }
   try {
-    const std::filesystem::path directory = std::filesystem::path(file).parent_path();
-    if (!directory.empty() && !std::filesystem::is_directory(directory))
-      throw std::runtime_error(fmt::format("{} is no directory", directory.string()));
+    RefuseMissingDirectory(file);
     WriteWhole(file, text, Draft::Existing::kReplace);
   } catch (const std::runtime_error& error) {
     throw CliError(kIo, error.what(), "regrasp param save OTHER_FILE");

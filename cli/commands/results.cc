@@ -30,9 +30,7 @@ void Copy(const fs::path& picture, const fs::path& target, const std::string& ne
   std::error_code ignored;
   if (fs::equivalent(picture, target, ignored)) return;
   try {
-    const fs::path directory = fs::absolute(target).parent_path();
-    if (!fs::is_directory(directory))
-      throw std::runtime_error(directory.string() + " is not a directory");
+    RefuseMissingDirectory(target);
     WriteWhole(target, ReadRegularFile(picture, kMaxPicture), Draft::Existing::kReplace);
   } catch (const std::exception& e) {
     throw CliError(

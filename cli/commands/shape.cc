@@ -42,6 +42,7 @@ ExitCode Shape(Context& context, const Invocation& invocation) {
   if (invocation.Has("output")) {
     const Json& mesh = At(answer, "mesh");
     try {
+      RefuseMissingDirectory(target);
       WriteWhole(target, suffix == ".ply" ? PlyText(mesh) : StlText(mesh),
                  Draft::Existing::kReplace);
     } catch (const std::exception& e) {

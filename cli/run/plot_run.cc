@@ -169,6 +169,7 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
                    fmt::format("{} shows one run, {} are given; only comparison shows several",
                                name, paths.size()),
                    PlotCommand(name, paths.front()));
+  RefuseMissingDirectory(out);
   Draft draft(out, Draft::Existing::kReplace);
   std::vector<Pictured> runs;
   if (comparison)

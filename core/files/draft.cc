@@ -114,6 +114,12 @@ void WriteWhole(const std::string& target, std::string_view text, Draft::Existin
   draft.Commit(durable);
 }
 
+void RefuseMissingDirectory(const std::string& target) {
+  const fs::path directory = fs::absolute(target).parent_path();
+  if (!fs::is_directory(directory))
+    throw std::runtime_error(directory.string() + " is not a directory");
+}
+
 void RemoveAbandonedDrafts(const std::string& directory) {
   std::error_code error;
   fs::directory_iterator entries(directory.empty() ? "." : directory, error);

@@ -39,6 +39,10 @@ class Draft {
 void WriteWhole(const std::string& target, std::string_view text, Draft::Existing existing,
                 bool durable = true);
 
+/// For files that somebody types the name of: throws std::runtime_error where the directory that
+/// `target` would be in is none, which a Draft would make.
+void RefuseMissingDirectory(const std::string& target);
+
 /// Removes what writers that have been killed left beside the files of a directory. Never throws;
 /// what cannot be removed stays.
 void RemoveAbandonedDrafts(const std::string& directory);

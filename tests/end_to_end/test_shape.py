@@ -61,6 +61,8 @@ class Shape(DaemonCase):
         self.expect(0, "plot", "shape", "-o", self.dir / "shape.svg")
         self.expect(0, "record", "stop")
         self.expect(0, "plot", "shape", self.dir / "out" / "egg.mcap", "-o", self.dir / "again.svg")
+        cause, _ = self.refused(74, "plot", "shape", self.dir / "out" / "egg.mcap", "-o", self.dir / "no" / "again.svg")
+        self.assertIn(f"{self.dir / 'no'} is not a directory", cause)
         picture = (self.dir / "shape.svg").read_text()
         self.assertIn(f"touched, {100 * shape['touched_fraction']:.0f} % of it", picture)
         self.assertIn(f"rms error  {1e3 * shape['truth']['rms_error_m']:.2f} mm", picture)
@@ -68,6 +70,13 @@ class Shape(DaemonCase):
         self.expect(0, "reset")
         self.assertEqual(self.json("shape")["touched_cells"], 0)
         self.refused(5, "plot", "shape")
+
+    def test_a_directory_that_is_missing_is_not_made(self):
+        for words in (["shape", "-o", "FILE.ply"], ["plot", "scene", "-o", "FILE.png"], ["param", "save", "FILE.toml"]):
+            with self.subTest(words):
+                cause, _ = self.refused(74, *(word.replace("FILE", str(self.dir / "no" / "x" / "felt")) for word in words))
+                self.assertIn(f"{self.dir / 'no' / 'x'} is not a directory", cause)
+                self.assertFalse((self.dir / "no").exists())
 
     def test_another_suffix_is_refused(self):
         said = self.refused(2, "shape", "-o", self.dir / "felt.obj")
