@@ -1,15 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 #include "cli/run/npz.h"
 #include "cli/run/run_tables.h"
+#include "core/journal/run_messages.h"
 
 namespace regrasp::run {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostOfOne = 4096;  // numbers of one value; ours have some hundred
 
 /// Whether every list has the length that the first of its kind has.
 bool Regular(const Json& value, const std::vector<std::size_t>& shape, std::size_t level = 0) {
@@ -37,10 +42,14 @@ bool AllOf(const Json& value, bool (Json::*kind)() const noexcept, bool or_null)
   return true;
 }
 
-void Numbers(const Json& value, std::vector<double>* out) {
-  if (value.is_null()) return out->push_back(std::numeric_limits<double>::quiet_NaN());
+/// The numbers of a value, NaN for null; so many of them for a whole value that is null.
+void Numbers(const Json& value, std::size_t count, std::vector<double>* out) {
+  if (value.is_null()) {
+    out->insert(out->end(), count, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
   if (!value.is_array()) return out->push_back(value.get<double>());
-  for (const Json& item : value) Numbers(item, out);
+  for (const Json& item : value) Numbers(item, 1, out);
 }
 
 void Bools(const Json& value, std::string* out) {
@@ -61,36 +70,37 @@ Json AsList(const RunTables& run, const Json& value) {
   return value;
 }
 
-/// One field of every row: numbers and truth values as such, everything else as text.
-void AddField(const TableRows& rows, const std::string& name, const std::string& field, Npz* npz) {
-  const std::vector<std::size_t> inner = ShapeOf(rows.front().at(field));
-  bool numbers = true, bools = true;
-  for (const Json& row : rows) {
-    const auto found = row.find(field);
-    const bool same =
-        found != row.end() && (inner.empty() ? !found->is_array() : Regular(*found, inner));
-    numbers = numbers && same && AllOf(*found, &Json::is_number, true);
-    bools = bools && same && AllOf(*found, &Json::is_boolean, false);
+/// One field of every row, null where a row lacks it: numbers (NaN for null) and truth values as
+/// such, everything else as text ("" for null). `text`: it is one, also where it is never known.
+void AddField(const TableRows& values, const std::string& name, bool text, Npz* npz) {
+  const auto known = std::ranges::find_if(values, [](const Json& v) { return !v.is_null(); });
+  const std::vector<std::size_t> inner =
+      known == values.end() ? std::vector<std::size_t>() : ShapeOf(*known);
+  const std::size_t count =
+      std::accumulate(inner.begin(), inner.end(), std::size_t{1}, std::multiplies<>());
+  bool numbers = !text && count <= kMostOfOne, bools = !text;
+  for (const Json& value : values) {
+    const bool regular = inner.empty() ? !value.is_array() : Regular(value, inner);
+    numbers = numbers && (value.is_null() || (regular && AllOf(value, &Json::is_number, true)));
+    bools = bools && regular && AllOf(value, &Json::is_boolean, false);
   }
-  std::vector<std::size_t> shape = {rows.size()};
+  std::vector<std::size_t> shape = {values.size()};
   if (numbers || bools) shape.insert(shape.end(), inner.begin(), inner.end());
   if (numbers) {
-    std::vector<double> values;
-    for (const Json& row : rows) Numbers(row.at(field), &values);
-    npz->Add(name, shape, values);
+    std::vector<double> all;
+    for (const Json& value : values) Numbers(value, count, &all);
+    npz->Add(name, shape, all);
   } else if (bools) {
-    std::string values;
-    for (const Json& row : rows) Bools(row.at(field), &values);
-    npz->AddBools(name, shape, values);
+    std::string all;
+    for (const Json& value : values) Bools(value, &all);
+    npz->AddBools(name, shape, all);
   } else {
-    std::vector<std::string> values;
-    for (const Json& row : rows) {
-      const auto found = row.find(field);
-      values.push_back(found == row.end()   ? ""
-                       : found->is_string() ? found->get<std::string>()
-                                            : found->dump());
-    }
-    npz->AddText(name, values);
+    std::vector<std::string> all;
+    for (const Json& value : values)
+      all.push_back(value.is_null()     ? ""
+                    : value.is_string() ? value.get<std::string>()
+                                        : value.dump());
+    npz->AddText(name, all);
   }
 }
 
@@ -105,10 +115,10 @@ void WriteNpz(const RunTables& run, const std::string& out) {
       for (const auto& [field, value] : row.items())
         if (std::find(fields.begin(), fields.end(), field) == fields.end()) fields.push_back(field);
     for (const std::string& field : fields) {
-      TableRows with;  // commands differ in their fields
+      TableRows values;  // commands differ in their fields
       for (const Json& row : rows)
-        with.push_back({{field, row.contains(field) ? AsList(run, row.at(field)) : Json("")}});
-      AddField(with, name + "." + field, field, &npz);
+        values.push_back(row.contains(field) ? AsList(run, row.at(field)) : Json());
+      AddField(values, name + "." + field, IsText(name, field), &npz);
       if (const auto unit = UnitOf(field); !unit.empty())
         units.push_back(fmt::format("{}.{} [{}]", name, field, unit));
     }

@@ -95,6 +95,15 @@ bool IsTabular(std::string_view topic) {
          topic != "saved_states";
 }
 
+bool IsText(std::string_view topic, std::string_view field) {
+  for (std::size_t i = 0; i < kRunTopics.size(); ++i)
+    for (const RunField& known : FieldsOf(static_cast<RunTopic>(i)))
+      if (kRunTopics[i] == topic && known.name == field)
+        return known.type.name == std::string_view("string") &&
+               known.type.per == RunFieldType::Per::kSample;
+  return false;
+}
+
 std::string RunFieldTable() {
   std::string text = "| topic | field | type | meaning |\n|---|---|---|---|\n";
   for (std::size_t i = 0; i < kRunTopics.size(); ++i) {

@@ -37,6 +37,9 @@ inline constexpr std::array<std::string_view, 14> kRunTopics = {
 /// Whether a topic is of use in a table: those for viewers and the saved states are not.
 bool IsTabular(std::string_view topic);
 
+/// Whether a field of a topic holds a text, or null.
+bool IsText(std::string_view topic, std::string_view field);
+
 /// Every field of every topic, as a table in Markdown: topic, field, type, meaning.
 std::string RunFieldTable();
 
