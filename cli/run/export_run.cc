@@ -85,17 +85,27 @@ McapSummary WriteMcap(const std::string& path, const Source& source, const std::
   return summary;
 }
 
+/// Every segment, in its place; or the stretch of the last one, which alone is segment 0 of a file
+/// that replays.
 McapSummary ResampleFile(const std::string& path, const ExportOptions& options,
                          const OnMessage& on_message, std::string* note) {
-  RunWindow window(path, options.stretch);
-  *note = window.note();
   McapSummary summary;
-  Resample(&window, options.rate_hz, [&](const McapMessage& message) {
+  const OnMessage counted = [&](const McapMessage& message) {
     ++summary.messages;
     on_message(message);
-  });
-  summary.complete = window.file().complete;
-  summary.lost = window.file().lost;
+  };
+  const auto add = [&](int segment) {  // returns how many there are
+    RunWindow window(path, options.stretch, 0, segment);
+    if (note->empty()) *note = window.note();
+    ResampledPlace place{options.format == "mcap" ? 0 : window.number(), 0};
+    if (options.whole) place = {segment, window.segment().offset_ns};
+    Resample(&window, options.rate_hz, place, counted);
+    summary.complete = window.file().complete;
+    summary.lost = window.file().lost;
+    return static_cast<int>(window.file().segments.size());
+  };
+  if (!options.whole) add(RunWindow::kLast);
+  for (int i = 0, n = options.whole ? 1 : 0; i < n; ++i) n = add(i);
   return summary;
 }
 
@@ -112,8 +122,8 @@ ExportResult ExportRun(const std::string& path, const ExportOptions& options, co
       if (message.topic == "run") on_run(message.data);
       to_output(message);
     };
-    if (options.whole) return ReadMcap(path, on_message);
     if (options.rate_hz > 0) return ResampleFile(path, options, on_message, &result.note);
+    if (options.whole) return ReadMcap(path, on_message);
     return ReadStretch(path, options.stretch, format == "mcap", on_message);
   };
   McapSummary summary;

@@ -21,7 +21,7 @@ struct ExportResult {
 
 struct ExportOptions {
   std::string format, out;
-  bool whole = true;  ///< every segment, as recorded; false: the last segment's `stretch`
+  bool whole = true;  ///< every segment; false: the last segment's `stretch`
   Stretch stretch;
   double rate_hz = 0;  ///< more than 0: executed again and sampled so often; 0: as recorded
 };

@@ -103,7 +103,7 @@ ExitCode ExportCommand(const Command& command) {
   options.out = command.options.at("--output");
   options.stretch = command.stretch();
   options.rate_hz = command.Number("--rate", 0);
-  options.whole = !command.Has("--from") && !command.Has("--to") && !command.Has("--rate");
+  options.whole = !command.Has("--from") && !command.Has("--to");
   Json differences = Json::array();
   const ExportResult result = ExportRun(command.file, options, [&](std::string_view config) {
     TellDifferences(config, &differences);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/client/errors.h"
 #include "core/journal/journal_text.h"
 
 namespace regrasp::run {
@@ -15,16 +16,15 @@ constexpr std::int64_t kEventTicks = 20;
 /// Gives every message its topic, schema and time.
 class Sender {
  public:
-  Sender(const SessionConfig& config, const OnMessage& on_message)
-      : config_(config), on_message_(on_message) {
+  Sender(const SessionConfig& config, const ResampledPlace& place, const OnMessage& on_message)
+      : config_(config), place_(place), on_message_(on_message) {
     for (std::size_t i = 0; i < kRunTopics.size(); ++i)
       schemas_.push_back(
           {RunSchemaName(static_cast<RunTopic>(i)), RunSchema(static_cast<RunTopic>(i), config)});
   }
   RunPlace At(std::int64_t tick) const {
-    return {config_, 0,
-            static_cast<std::uint64_t>(
-                std::llround(static_cast<double>(tick) * config_.world.dt * 1e9))};
+    const double time_ns = std::round(static_cast<double>(tick) * config_.world.dt * 1e9);
+    return {config_, place_.segment, place_.offset_ns + static_cast<std::uint64_t>(time_ns)};
   }
   void operator()(RunTopic topic, std::int64_t tick, const std::string& text) const {
     const auto i = static_cast<std::size_t>(topic);
@@ -33,6 +33,7 @@ class Sender {
 
  private:
   const SessionConfig& config_;
+  const ResampledPlace place_;
   const OnMessage& on_message_;
   struct Schema {
     std::string name, text;
@@ -40,19 +41,33 @@ class Sender {
   std::vector<Schema> schemas_;
 };
 
+/// Those of the saved state, and those up to `tick`.
 void SendCommands(const RunWindow& window, std::size_t* next, std::int64_t tick,
                   const Sender& send) {
   const auto& entries = window.segment().journal->entries;
-  for (; *next < entries.size() && entries[*next].tick <= tick; ++*next)
+  const auto due = [&] { return *next < window.commands_before() || entries[*next].tick <= tick; };
+  for (; *next < entries.size() && due(); ++*next)
     send(RunTopic::kCommands, entries[*next].tick,
-         EntryText(entries[*next], window.segment().journal->config, 0, *next));
+         EntryText(entries[*next], window.segment().journal->config, send.At(0).segment, *next));
+}
+
+/// Ticks from one sample to the next.
+double StepOf(double rate_hz, double dt) {
+  const double step = 1 / (rate_hz * dt);
+  if (step < 1 - 1e-9)
+    throw cli::CliError(ExitCode::kUsage,
+                        fmt::format("--rate {:g} Hz: expected at most {:g} Hz, a sample each tick",
+                                    rate_hz, 1 / dt));
+  return std::min(step, 1e15);
 }
 
 }  // namespace
 
-void Resample(RunWindow* window, double rate_hz, const OnMessage& on_message) {
+void Resample(RunWindow* window, double rate_hz, const ResampledPlace& place,
+              const OnMessage& on_message) {
   const SessionConfig& config = window->segment().journal->config;
-  const Sender send(config, on_message);
+  const double step = StepOf(rate_hz, config.world.dt);
+  const Sender send(config, place, on_message);
   Replay& replay = window->replay();
   const auto run_to = [&](std::int64_t tick) {
     while (replay.session().tick() < tick) {  // a session keeps few events
@@ -64,7 +79,7 @@ void Resample(RunWindow* window, double rate_hz, const OnMessage& on_message) {
           send(RunTopic::kEvents, event.tick, RunEvent(event, send.At(event.tick)));
     }
   };
-  send(RunTopic::kRun, 0, ConfigText(config, 0));
+  send(RunTopic::kRun, 0, ConfigText(config, place.segment));
   send(RunTopic::kScene, 0, RunScene(send.At(0)));
   std::size_t commands = 0;
   Frame frame;
@@ -78,13 +93,12 @@ void Resample(RunWindow* window, double rate_hz, const OnMessage& on_message) {
       if (topic != RunTopic::kGait || frame.gait.active)
         send(topic, tick, RunSample(topic, frame, commands, send.At(tick)));
   };
-  const double step = std::max(1.0, 1 / (rate_hz * config.world.dt));  // [ticks]
-  for (int i = 0;; ++i) {
+  const auto ticks = static_cast<double>(window->end_tick() - window->from_tick());
+  for (int i = 0; i * step < ticks + 0.5; ++i) {
     const std::int64_t tick = window->from_tick() + std::llround(i * step);
-    if (tick > window->end_tick()) break;
-    sample(tick);
+    if (tick <= window->end_tick()) sample(tick);
   }
-  SendCommands(*window, &commands, window->end_tick() - 1, send);
+  SendCommands(*window, &commands, window->end_tick() - (window->to_the_end() ? 0 : 1), send);
 }
 
 }  // namespace regrasp::run

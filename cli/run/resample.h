@@ -11,9 +11,16 @@ namespace regrasp::run {
 
 using OnMessage = std::function<void(const McapMessage&)>;
 
-/// Configuration, scene, the stretch's commands and events, and every sampled topic at `rate_hz`
-/// (at most one sample a tick). Throws std::runtime_error where the replay differs from the
-/// recording.
-void Resample(RunWindow* window, double rate_hz, const OnMessage& on_message);
+/// Where the messages belong in the file that is made.
+struct ResampledPlace {
+  int segment = 0;
+  std::uint64_t offset_ns = 0;  ///< of its tick 0
+};
+
+/// Configuration, scene, the stretch's commands and events, and every sampled topic at `rate_hz`.
+/// Throws CliError(kUsage) for more samples than ticks, std::runtime_error where the replay differs
+/// from the recording.
+void Resample(RunWindow* window, double rate_hz, const ResampledPlace& place,
+              const OnMessage& on_message);
 
 }  // namespace regrasp::run

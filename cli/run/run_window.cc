@@ -45,8 +45,12 @@ std::uint64_t LastTime(const std::string& path, const std::vector<McapChunk>& ch
   return end;
 }
 
-RunWindow::RunWindow(const std::string& path, Stretch stretch, double lead_s)
-    : path_(path), stretch_(stretch), file_(ReadJournals(path, &chunks_)) {
+RunWindow::RunWindow(const std::string& path, Stretch stretch, double lead_s, int segment_number)
+    : path_(path),
+      stretch_(stretch),
+      file_(ReadJournals(path, &chunks_)),
+      number_(segment_number == kLast ? static_cast<int>(file_.segments.size()) - 1
+                                      : segment_number) {
   FindEnd();
   if (last_tick_ < from_tick())
     RefuseBeginning(stretch.from_s,
@@ -79,7 +83,10 @@ std::uint64_t RunWindow::FileTime(std::int64_t tick) const {
 
 void RunWindow::FindEnd() {
   const double dt_ns = segment().journal->config.world.dt * 1e9;
-  const std::uint64_t end = std::max(segment().offset_ns, LastTime(path_, chunks_));
+  const std::size_t next = static_cast<std::size_t>(number_) + 1;
+  const std::uint64_t end =
+      std::max(segment().offset_ns, next < file_.segments.size() ? file_.segments[next].offset_ns
+                                                                 : LastTime(path_, chunks_));
   const double ticks = static_cast<double>(end - segment().offset_ns) / dt_ns;
   if (!(ticks <= static_cast<double>(kMaxTick)))
     throw std::runtime_error(
@@ -96,7 +103,7 @@ std::optional<RunSavedState> RunWindow::FindState() const {
   const auto take = [&](const McapMessage& message) {
     if (message.topic != "saved_states" || message.time > time) return;
     RunSavedState state = ParseSavedState(message.data);
-    const bool here = state.segment + 1 == static_cast<int>(file_.segments.size());
+    const bool here = state.segment == number_;
     if (here && (!found || state.tick >= found->tick)) found = std::move(state);
   };
   ReadMcap(path_, take, [&](const McapChunk& chunk) { return chunk.offset == wanted; });
@@ -105,27 +112,26 @@ std::optional<RunSavedState> RunWindow::FindState() const {
 
 ReplayResult RunWindow::ReplayStretch(const OnState& on_state) {
   const std::int64_t from = from_tick(), end = end_tick();
-  const int last = static_cast<int>(file_.segments.size()) - 1;
   const auto compare = [&](const McapMessage& message) {
     if (message.topic != "state" || replay_->diverged()) return;
     int of = 0;
     const Segment::State state = ParseState(message.data, &of);
-    if (of != last || state.tick < std::max(from, replay_->session().tick()) || state.tick > end)
+    if (of != number_ || state.tick < std::max(from, replay_->session().tick()) || state.tick > end)
       return;
     if (state.commands < commands_before_) return;  // at the saved state's tick, but before it
     if (replay_->RunTo(state.tick) && replay_->ApplyDue(state.commands - commands_before_) &&
         replay_->Compare(state.hash) && on_state)
-      on_state(last, replay_->session());
+      on_state(number_, replay_->session());
   };
   ReplayResult result;
-  result.segment = last;
+  result.segment = number_;
   if (replay_->RunTo(from)) {
     const McapSummary summary = ReadMcap(path_, compare, [&](const McapChunk& chunk) {
       return !replay_->diverged() && chunk.topics.contains("state") &&
              chunk.end >= FileTime(from) && chunk.start <= FileTime(end);
     });
     file_.lost.insert(file_.lost.end(), summary.lost.begin(), summary.lost.end());
-    if (!replay_->diverged() && replay_->RunTo(end) && end == last_tick_) replay_->ApplyDue();
+    if (!replay_->diverged() && replay_->RunTo(end) && to_the_end()) replay_->ApplyDue();
   }
   result.ticks = replay_->session().tick() - start_tick_;
   result.compared = replay_->compared();

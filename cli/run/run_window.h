@@ -1,7 +1,7 @@
 #pragma once
 
-/// A stretch of a run file's last segment: from the nearest saved state before it, so that it
-/// begins at once however long the run was.
+/// A stretch of a segment of a run file, of the last one as a rule: from the nearest saved state
+/// before it, so that it begins at once however long the run was.
 
 #include <memory>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace regrasp::run {
 
-/// Simulated time [s] of the last segment.
+/// Simulated time [s] of the segment.
 struct Stretch {
   double from_s = 0, to_s = 1e9;
 };
@@ -27,22 +27,28 @@ class RunWindow {
   /// Reads the journal and begins at the last saved state that is not after `from_s`; at tick 0
   /// where there is none, or none that can be trusted: note() then says why. Throws McapError,
   /// JournalError, ModelError, CliError(kIo) where the run ends before `from_s`. With `lead_s`
-  /// the window begins so much earlier.
-  RunWindow(const std::string& path, Stretch stretch, double lead_s = 0);
+  /// the window begins so much earlier. `segment`: which one, or kLast.
+  static constexpr int kLast = -1;
+  RunWindow(const std::string& path, Stretch stretch, double lead_s = 0, int segment = kLast);
 
   /// Executes the stretch and compares every state in it that was recorded.
   ReplayResult ReplayStretch(const OnState& on_state);
 
   const RunFile& file() const { return file_; }  ///< its journals
-  const Segment& segment() const { return file_.segments.back(); }
+  const Segment& segment() const { return file_.segments[static_cast<std::size_t>(number_)]; }
+  int number() const { return number_; }  ///< of the segment in the file
   Replay& replay() { return *replay_; }
   /// Where it began, and whether that is a saved state.
   std::int64_t start_tick() const { return start_tick_; }
   bool from_saved_state() const { return from_saved_state_; }
+  /// So many of the segment's commands are in that state.
+  std::size_t commands_before() const { return commands_before_; }
   const std::string& note() const { return note_; }
   /// The stretch, no longer than the run [ticks].
   std::int64_t from_tick() const { return TickOf(stretch_.from_s); }
   std::int64_t end_tick() const { return std::min(TickOf(stretch_.to_s), last_tick_); }
+  /// Whether the stretch goes on to the end of the segment.
+  bool to_the_end() const { return end_tick() == last_tick_; }
 
  private:
   std::int64_t TickOf(double time_s) const;
@@ -55,11 +61,12 @@ class RunWindow {
   Stretch stretch_;
   std::vector<McapChunk> chunks_;
   RunFile file_;
+  int number_ = 0;
   std::int64_t last_tick_ = 0;
   std::unique_ptr<Replay> replay_;
   std::int64_t start_tick_ = 0;
   bool from_saved_state_ = false;
-  std::size_t commands_before_ = 0;  ///< of the segment, in the saved state
+  std::size_t commands_before_ = 0;
   std::string note_;
 };
 

@@ -3,6 +3,7 @@ whole and after kill -9."""
 
 import csv
 import json
+import math
 import os
 import pathlib
 import select
@@ -153,6 +154,78 @@ class Runs(DaemonCase):
             self.assertEqual(again[tick], row)
         self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "short.mcap", "--rate", 10, "--from", 1, "--to", 2)
         self.assertTrue(self.json("replay", self.dir / "short.mcap")["identical"])
+
+    def test_every_segment_is_exported_at_another_rate(self):
+        path = self.json("record", "start", "two.mcap")["path"]
+        self.expect(0, "grasp")
+        self.step(500)
+        self.expect(0, "reset", "--seed", 2, "--object", "egg")
+        self.step(300)
+        self.expect(0, "grasp")
+        self.step(400)
+        self.expect(0, "noise", "preset", "coarse")  # at the last tick
+        self.expect(0, "record", "stop")
+
+        def exported(name, topic, *options):
+            self.expect(0, "export", path, "--format", "csv", "-o", self.dir / name, *options)
+            with open(self.dir / name / (topic + ".csv"), encoding="utf-8") as file:
+                return list(csv.DictReader(file))
+        places = [(row["segment"], int(row["tick"])) for row in exported("fine", "joints", "--rate", "1kHz")]
+        self.assertEqual(places, [("0", tick) for tick in range(501)] + [("1", tick) for tick in range(701)])
+        recorded, fine = exported("recorded", "commands"), exported("again", "commands", "--rate", "100")
+        self.assertEqual(fine, recorded)
+        self.assertEqual(len(fine), 3)
+        # A stretch is of the last one, and tables say so.
+        part = exported("part", "joints", "--rate", "100", "--from", 0.2, "--to", 0.3)
+        self.assertEqual({row["segment"] for row in part}, {"1"})
+        self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "fine.mcap", "--rate", 100)
+        found = self.json("replay", self.dir / "fine.mcap")
+        self.assertEqual((found["identical"], found["segments"], found["commands"], found["ticks"]), (True, 2, 3, 1200))
+        self.expect(0, "export", path, "--format", "mcap", "-o", self.dir / "last.mcap", "--rate", 100, "--from", 0.1)
+        self.assertTrue(self.json("replay", self.dir / "last.mcap")["identical"])
+
+    def test_more_samples_than_ticks_are_refused(self):
+        path = self.json("record", "start", "short.mcap")["path"]
+        self.step(20)
+        self.expect(0, "record", "stop")
+        for rate in ("3000", "1.001kHz"):
+            cause, hint = self.refused(2, "export", path, "--format", "csv", "-o", self.dir / "csv", "--rate", rate)
+            self.assertRegex(cause, r"--rate [\d.]+ Hz: expected at most 1000 Hz")
+            self.assertEqual(hint, "  try: regrasp help export")
+        self.assertFalse((self.dir / "csv").exists())
+        self.expect(0, "export", path, "--format", "csv", "-o", self.dir / "csv", "--rate", "1e-320")  # one sample
+        self.assertRegex(" ".join(self.expect(0, "help", "export").stdout.split()), r"--rate HZ [^-]*at most each tick \(1000\)")
+
+    def test_an_array_of_commands_holds_numbers_and_text(self):
+        path = self.record()
+        self.expect(0, "record", "stop")
+        self.expect(0, "export", path, "--format", "npz", "-o", self.dir / "run.npz")
+        arrays = read_npz(self.dir / "run.npz")
+        methods = arrays["commands.method"][1]
+        for field, method, value in (("duration_s", "push", 0.05), ("max_cycles", "explore", 800), ("speed_rad_s", "rotate", None)):
+            shape, values = arrays["commands." + field]
+            self.assertEqual(shape, (9,))
+            for number, of in zip(values, methods, strict=True):
+                self.assertIsInstance(number, float)
+                self.assertEqual(math.isnan(number), of != method, (field, of))
+                self.assertTrue(of != method or value in (None, number))
+        shape, values = arrays["commands.force_W_n"]
+        self.assertEqual(shape, (9, 3))
+        self.assertEqual([number for number in values if not math.isnan(number)], [0.2, 0, 0])
+        self.assertEqual(set(arrays["commands.finger"][1]), {"", "ring"})
+        self.assertIn("", arrays["events.finger"][1])
+        for name, (_, values) in arrays.items():
+            self.assertNotIn("null", values, name)
+
+    def test_a_file_that_was_removed_meanwhile_is_an_error(self):
+        for change in (os.unlink, lambda path: os.rename(path, path + ".old"), lambda path: shutil.copy(path, path + ".new") and os.rename(path + ".new", path)):
+            path = self.json("record", "start")["path"]
+            self.step(100)
+            change(path)
+            cause, hint = self.refused(74, "record", "stop")
+            self.assertIn(f"cannot write {path}: the file was removed, renamed or replaced meanwhile", cause)
+            self.assertIn("record list", hint)
+            self.assertNotIn("recording", self.expect(0, "status").stdout)
 
     def test_a_film_has_its_pictures(self):
         path = self.record()
