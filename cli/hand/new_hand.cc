@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kArmature = 2e-4;            // [kg m²]: what public models of small hands use
-constexpr int kSearches = 3;                  // of other starts, where the first ones' best is poor
+constexpr int kSearches = 3;                  // for a hand of which no finger can be left out
 constexpr std::size_t kTried = 6;             // grasps of a search: by holding, then by using them
 constexpr std::size_t kBest = 2;              // of them, that are used more
 constexpr unsigned kUses = 3, kMoreUses = 6;  // seeds with which they are used
@@ -123,16 +123,14 @@ class Maker {
     for (const double size : BallsFor(box_, 1e-3 * kLeastBall)) sizes_mm_.push_back(1e3 * size);
   }
 
-  /// With other starts where the best for a ball is not good in use (an object takes long enough),
-  /// or nothing is good and no finger can be spared; with fewer fingers where nothing holds.
+  /// With other starts where nothing is good and no finger can be spared; with fewer fingers where
+  /// nothing holds.
   void SearchAll() {
     const int n = all_.num_fingers();
     const int searches = n < kFewestToRegrasp ? kSearches : 1;
     for (int k = 0; k < searches; ++k)
       for (const double size_mm : sizes_mm_)
         if (!best_.Good()) Search(0, size_mm, k);
-    for (int k = 1; k < kSearches; ++k)
-      if (object_.empty() && best_.Good() && !best_.use.Good()) Search(0, size_mm_, k);
     for (int out = 1; out <= 2 && n - out >= 3; ++out)
       for (const double size_mm : sizes_mm_)
         if (!best_.Holds()) Search(out, size_mm, 0);
@@ -154,7 +152,7 @@ class Maker {
         const HandLayout layout = Without(all_, whole_, out == 0 ? FingerSet{} : FingerSet{a, b});
         hand_ = LoadHand(urdf_, layout, options_.load());
         hand_.name = out_.name();
-        const Found found = Choose(FindGrasps(hand_, search), size_mm);
+        const Found found = Choose(FindGrasps(hand_, search));
         if (!found.Better(best_)) continue;
         best_ = found;
         size_mm_ = size_mm;
@@ -171,7 +169,7 @@ class Maker {
 
   /// The best grasps get a way in and a trial. Of those that hold, the first by their margin are
   /// tried in use; the best of all is taken.
-  Found Choose(const std::vector<BallGrasp>& grasps, double size_mm) {
+  Found Choose(const std::vector<BallGrasp>& grasps) {
     RandomStream random(search_.seed, 2);
     const std::size_t count = std::min(grasps.size(), kTried);
     std::vector<Found> tried;

@@ -75,8 +75,6 @@ double UseTrial::Points() const {
   return share(rose, explorations) + share(turned, turns) + share(clean, turns);
 }
 
-bool UseTrial::Good() const { return turned == turns && 10 * rose >= 9 * explorations; }
-
 bool CanBeUsed(const HandModel& hand) {
   return hand.num_fingers() >= kFewestToRegrasp &&
          std::ranges::all_of(hand.fingers, [](const Finger& f) { return f.joints.size() >= 3; });

@@ -20,8 +20,6 @@ struct UseTrial {
   UseTrial& operator+=(const UseTrial& more);
   /// 0 .. 3: the shares that rose, turned and were clean.
   double Points() const;
-  /// Every turn was completed and 9 of 10 explorations rose; so is a hand that was not tried.
-  bool Good() const;
 };
 
 inline constexpr double kCleanOffset = 5;  ///< of the object's centre from its first place [mm]
