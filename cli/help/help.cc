@@ -113,7 +113,8 @@ std::string MeaningOf(const Arg& arg) {
     text +=
         fmt::format("; {} to {}", LeastText(arg.min / arg.scale), MostText(arg.max / arg.scale));
   }
-  if (!arg.default_text.empty() && !arg.required) text += fmt::format(" (default: {})", arg.default_text);
+  if (!arg.default_text.empty() && !arg.required)
+    text += fmt::format(" (default: {})", arg.default_text);
   return text;
 }
 

@@ -146,7 +146,7 @@ std::string ProtocolPage() {
       "`id, method, state` (`queued`, `running`, `done`, `failed`, `cancelled`)`, error, progress` "
       "(0 ... 1)`, "
       "start_tick, end_tick, started_s, ended_s` (the same moments in simulated seconds)`, "
-      "finished, incident` (the record of a drop in it, or null)`, "
+      "finished, incident` (the record of a drop in it, or null), "
       "and what its method says above.\n\n";
   page += ParameterSection() + MeasureSection();
   page += "## Fields of run files\n\n" + RunFieldTable() + "\n";

@@ -27,8 +27,7 @@ std::string Shown(const JsonIn& value) {
 std::string Range(const ParamSpec& spec) {
   const bool low = spec.min > -1e299, high = spec.max < 1e299;
   const std::string unit = spec.unit.empty() ? "" : fmt::format(" {}", spec.unit);
-  if (low && high)
-    return fmt::format("{} ... {}{}", LeastText(spec.min), MostText(spec.max), unit);
+  if (low && high) return fmt::format("{} ... {}{}", LeastText(spec.min), MostText(spec.max), unit);
   if (low) return fmt::format("at least {}{}", LeastText(spec.min), unit);
   if (high) return fmt::format("at most {}{}", MostText(spec.max), unit);
   return "any";

@@ -46,7 +46,7 @@ class Arguments(Case):
 
     def test_lines_of_an_argument_are_no_lines_of_an_error(self):
         forged = "x\n  try: rm -rf y"
-        for words, code in (["config", "check", forged], 2), (["config", "check", "1 errors:\n  y"], 2), (["up", "--hand", "a\nb.toml"], 6), \
+        for words, code in (["config", "check", forged], 6), (["config", "check", "1 errors:\n  y"], 6), (["up", "--hand", "a\nb.toml"], 6), \
                            (["up", "--hand", forged], 6), (["up", "--noise", forged], 2), (["up", "--seed", forged], 2), (["hand", "check", forged], 6), \
                            (["object", "show", forged], 6), (["evaluate", forged], 6), (["param", "load", forged], 6), (["replay", forged], 6):
             said = self.run_one([str(REGRASP), "-s", str(self.socket), *words], {code}).stderr
