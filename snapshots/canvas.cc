@@ -233,8 +233,8 @@ void Canvas::Mark(Marker marker, Point2 centre, double radius, Colour colour, Co
     case Marker::kDiamond:
       shape(ring(4, 0, 1.35));
       break;
-    case Marker::kHexagon:
-      shape(ring(6, 0, 1.2));
+    case Marker::kRight:
+      shape(ring(3, 0, 1.35));
       break;
     case Marker::kUp:
       shape(ring(3, -90, 1.35));

@@ -49,7 +49,7 @@ enum class Marker : std::uint8_t {
   kPlus,
   kStar,
   kRing,
-  kHexagon
+  kRight
 };
 
 /// Look of one finger; `finger` is its index in the hand model.

@@ -35,7 +35,7 @@ std::optional<EventLook> LookOfEvent(const Event& event) {
     case EventKind::kNoise:
       return EventLook{"noise, or its seed, changed", Marker::kSquare};
     case EventKind::kParameter:
-      return EventLook{"parameter changed", Marker::kHexagon};
+      return EventLook{"parameter changed", Marker::kRight};
     case EventKind::kFriction:
       return EventLook{"friction felt", Marker::kRing};
     case EventKind::kPush:
