@@ -93,7 +93,8 @@ void ScenarioFile::Write(const std::string& text, const std::string& ball) const
 
 std::string ShellWord(const std::string& word) {
   const auto plain = [](unsigned char c) {
-    return std::isalnum(c) || c >= 0x80 || std::string_view("._/-+:@,%").find(c) < 9;
+    return std::isalnum(c) || c >= 0x80 ||
+           std::string_view("._/-+:@,%").find(static_cast<char>(c)) != std::string_view::npos;
   };
   if (!word.empty() && std::ranges::all_of(word, plain)) return word;
   std::string quoted = "'";

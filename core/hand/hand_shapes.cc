@@ -152,7 +152,7 @@ Shape HandShapes::Filled(const UrdfLink& in, const UrdfGeometry& geometry) {
   if (before) taken += ", about as thick as " + LinkElement(before->name) + ",";
   problems_->Warn(geometry.line, LinkElement(in.name),
                   fmt::format("<mesh> filename = {}: not found; {} in its place",
-                              Quoted(geometry.mesh_name), taken));
+                              QuotedPath(geometry.mesh_name), taken));
   return shape;
 }
 

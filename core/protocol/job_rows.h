@@ -101,7 +101,8 @@ inline constexpr std::array kJobRows = {
         "job; its record: angle_rad (signed, unwrapped, true), turns, "
         "gait_cycles, regrasps, dropped, max_position_error_m (of the object's centre from where "
         "it began), max_tilt_rad (of the axis), max_lag_m (behind its reference), "
-        "reference_resets (times the reference followed the object), sim_time_s"},
+        "reference_resets (times the reference followed the object), sim_time_s; failed where it "
+        "ends by itself and the object has truly not turned as asked, within 5 degrees"},
     MethodSpec{
         "move", "move", "move the object a little with all fingers, without a regrasp", kMove, true,
         "job; its record: offset_m[3], rotation_rad[3] (wanted), achieved_offset_m[3], "

@@ -5,8 +5,9 @@
 
 namespace regrasp {
 
-/// The object has turned by what was asked when its true angle is as near to it as this: what the
-/// controller believes to have reached does not count [rad].
+/// The object has turned by what was asked, and a rotation that has ended is done, when its true
+/// angle is as near to it as this: what the controller believes to have reached does not count
+/// [rad].
 inline constexpr double kCompletedWithin = 5 * std::numbers::pi / 180;
 
 /// Angles about the same axis, unwrapped and signed [rad]; false for NaN.

@@ -243,6 +243,22 @@ class Hand(Case):
         self.assertEqual((done["state"], done["regrasps"]), ("done", 0), done)
         self.expect(0, "param", "set", "gait.step_rad", "0.05")
 
+    def test_a_turn_that_ends_short_has_failed(self):
+        # Without its stiffness the object stays behind: 21 of 28 degrees.
+        self.expect(0, "-q", "hand", "new", self.write("three.urdf", hand(3)), "-o", self.dir / "three.toml")
+        self.addCleanup(self.regrasp, "down")
+        self.expect(0, "up", "--hand", self.dir / "three.toml", "--clock", "lockstep", "--speed", "max")
+        self.expect(0, "grasp", "--wait")
+        for name, value in (("control.rotation_stiffness", 0), ("control.rotation_integral", 0), ("gait.step_rad", 0.7)):
+            self.expect(0, "param", "set", name, value)
+        done = self.expect(1, "rotate", "--angle", "28", "--wait")
+        record = self.json("job", "show", "2")
+        self.assertEqual(record["state"], "failed", record)
+        self.assertLess(record["angle_rad"], math.radians(28 - 5))
+        self.assertIn(f"turned by {math.degrees(record['angle_rad']):.1f} instead of 28.0 degrees", record["error"])
+        self.assertIn(record["error"], done.stdout)
+        self.assertEqual(self.json("status")["state"], "holding")
+
     def test_a_scenario_for_an_object_turns_it_until_it_fits(self):
         # A flat box, 20 x 60 x 70 mm, named from where the scenario stands; its inertia cannot be.
         (self.dir / "things").mkdir()
