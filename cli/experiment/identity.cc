@@ -2,16 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "cli/client/daemon_process.h"
 #include "cli/client/errors.h"
 #include "cli/print/print.h"
 
 namespace regrasp::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// {"hand": "NAME HASH", ...}
 Json ModelsIn(const Json& identity) {
@@ -26,17 +22,11 @@ const Json& OfCase(const Json& written, const Plan& plan, std::size_t which) {
   return plan.cases.empty() ? written : At(written, plan.cases.at(which).name.c_str());
 }
 
-/// The file of a model as far as it is known here, else its name.
-std::string FileOf(const std::string& kind, const std::string& name, std::size_t which,
-                   const Plan& plan) {
-  const std::string asked = kind == "object" ? plan.setting(which).object : plan.hand;
-  const std::string of = asked.empty() ? name : asked;
-  fs::path file = of;
-  if (of.find('/') == std::string::npos)
-    file = fs::path(plan.models_dir) / (kind == "object" ? "objects" : "hands") / (of + ".urdf");
-  if (kind == "scenario") file.replace_extension(".toml");
-  std::error_code ignored;
-  return fs::exists(file, ignored) ? file.string() : of;
+/// A model as it was asked for, else by its name: a hand's scenario may name its file.
+std::string Asked(const std::string& kind, const std::string& name, std::size_t which,
+                  const Plan& plan) {
+  const std::string asked = kind == "object" ? plan.setting(which).object : "";
+  return asked.empty() ? name : asked;
 }
 
 [[noreturn]] void Refuse(const std::string& what, const std::string& was, const std::string& is) {
@@ -68,7 +58,7 @@ void CheckIdentity(SteppedDaemon* daemon, std::size_t which, const Plan& plan) {
     if (const Json& was = At(written, kind), &is = At(models, kind); was != is)
       Refuse(
           fmt::format("{} {}", kind,
-                      FileOf(kind, Plain(identity.at("models").at(kind).at("name")), which, plan)),
+                      Asked(kind, Plain(identity.at("models").at(kind).at("name")), which, plan)),
           Plain(was), Plain(is));
   if (const std::string build = DaemonBuild(); build != plan.build)
     Refuse(FindDaemon(), plan.build, build);

@@ -7,6 +7,7 @@
 #include "cli/hand/hand_command.h"
 #include "core/files/names.h"
 #include "core/posture/hand_guess.h"
+#include "core/session/few_fingers.h"
 #include "core/session/session.h"
 #include "core/world/stepper_choice.h"
 #include "snapshots/snapshots.h"
@@ -153,7 +154,7 @@ std::vector<std::string> Warnings(const Loaded& loaded, int own_contacts) {
         fmt::format("in the {} posture links of different fingers touch in {} places",
                     loaded.scenario.empty() ? "rest" : "preshape", own_contacts));
   for (const Finger& finger : loaded.model.hand.fingers)
-    if (finger.joints.size() < 3)
+    if (!PlacesItsTip(finger))
       warnings.push_back(
           fmt::format("finger {} has {}: it can hold, but a tip needs 3 to slide where it shall",
                       finger.name, DrivenJoints(finger)));

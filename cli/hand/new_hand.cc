@@ -15,6 +15,7 @@
 #include "core/posture/hand_guess.h"
 #include "core/posture/scenario_text.h"
 #include "core/posture/way_in.h"
+#include "core/session/few_fingers.h"
 #include "core/world/stepper_choice.h"
 
 namespace regrasp::hand {
@@ -232,7 +233,7 @@ class Maker {
       progress_.Show("exploring and turning with it",
                      static_cast<double>(k) / static_cast<double>(tried->size()));
       Found& found = (*tried)[k];
-      if (found.Good() && CanBeUsed(found.model.hand))
+      if (found.Good() && CanRegrasp(found.model.hand))
         found.use += TryToUse(found.model, found.choice.stepper, search_.seed + before, seeds);
     }
     std::ranges::stable_sort(*tried, better);

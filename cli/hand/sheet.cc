@@ -6,6 +6,7 @@
 
 #include "cli/hand/scenario_file.h"
 #include "core/files/names.h"
+#include "core/session/few_fingers.h"
 
 namespace regrasp::hand {
 namespace {
@@ -67,10 +68,10 @@ std::vector<std::string> Sheet::Remarks() const {
           fmt::format("without {} the others cannot hold {}: it will not be allowed to leave",
                       best.model.hand.fingers[f].name, held));
   for (const Finger& finger : best.model.hand.fingers)
-    if (finger.joints.size() < 3)
+    if (!PlacesItsTip(finger))
       remarks.push_back(
-          fmt::format("{} has {}: it holds, but cannot explore or regrasp, so that "
-                      "the hand turns an object by one motion only",
+          fmt::format("{} has {}: it holds, but can neither slide nor be placed: "
+                      "it does not explore, and the hand turns no farther than gait.step_rad (20°)",
                       finger.name, DrivenJoints(finger)));
   if (g.clearance < 0)
     remarks.push_back(fmt::format(

@@ -1,6 +1,5 @@
 #include "cli/hand/use_trial.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <future>
@@ -73,11 +72,6 @@ UseTrial& UseTrial::operator+=(const UseTrial& more) {
 double UseTrial::Points() const {
   const auto share = [](int of, int all) { return all > 0 ? static_cast<double>(of) / all : 0.0; };
   return share(rose, explorations) + share(turned, turns) + share(clean, turns);
-}
-
-bool CanBeUsed(const HandModel& hand) {
-  return hand.num_fingers() >= kFewestToRegrasp &&
-         std::ranges::all_of(hand.fingers, [](const Finger& f) { return f.joints.size() >= 3; });
 }
 
 UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed,

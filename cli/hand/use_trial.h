@@ -25,9 +25,6 @@ struct UseTrial {
 inline constexpr double kCleanOffset = 5;  ///< of the object's centre from its first place [mm]
 inline constexpr double kCleanTilt = 10;   ///< of the axis that it turns about [deg]
 
-/// Whether a hand can do either: four fingers or more, each of three driven joints or more.
-bool CanBeUsed(const HandModel& hand);
-
 /// Noise `paper`, `seeds` seeds from this one on, side by side. Where the object is not grasped
 /// nothing rises and nothing turns.
 UseTrial TryToUse(const LoadedScenario& model, Stepper stepper, std::uint64_t seed, unsigned seeds);

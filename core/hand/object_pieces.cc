@@ -96,8 +96,7 @@ Parts PartsOf(const std::vector<Vector3d>& vertices,
   parts.gap = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < pieces.size(); ++i)
     for (std::size_t k = 0; k < pieces.size(); ++k)
-      if (part[i] == 0 && part[k] != 0)
-        parts.gap = std::min(parts.gap, boxes[i].exteriorDistance(boxes[k]));
+      if (part[i] < part[k]) parts.gap = std::min(parts.gap, boxes[i].exteriorDistance(boxes[k]));
   return parts;
 }
 

@@ -17,7 +17,7 @@ TriangleMesh JoinPieces(const std::vector<UrdfCollision>& pieces, const std::str
                         Problems* problems);
 
 /// Pieces that hang together: those whose boxes are no more than 1 mm apart. `gap`: least distance
-/// of the first part's boxes from the others' [m].
+/// of boxes of two parts [m].
 struct Parts {
   int count = 1;
   double gap = 0;

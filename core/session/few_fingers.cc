@@ -5,17 +5,11 @@
 
 namespace regrasp {
 
-namespace {
-
-constexpr std::size_t kFewestJoints = 3;  // that place a fingertip
-
-bool Places(const Finger& finger) { return finger.joints.size() >= kFewestJoints; }
+bool PlacesItsTip(const Finger& finger) { return finger.joints.size() >= kFewestJoints; }
 
 bool CanRegrasp(const HandModel& hand) {
-  return hand.num_fingers() >= kFewestToRegrasp && std::ranges::all_of(hand.fingers, Places);
+  return hand.num_fingers() >= kFewestToRegrasp && std::ranges::all_of(hand.fingers, PlacesItsTip);
 }
-
-}  // namespace
 
 Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command) {
   if (CanRegrasp(hand)) return {};
@@ -27,7 +21,7 @@ Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const 
               "others do not hold the object",
               "regrasp move --turn 0,0,-10 --wait"};
     if (command.finger < 0 || command.finger >= hand.num_fingers() ||
-        Places(hand.fingers[static_cast<std::size_t>(command.finger)]))
+        PlacesItsTip(hand.fingers[static_cast<std::size_t>(command.finger)]))
       return {};
     return {Verdict::Kind::kBadState,
             "this finger has fewer than three driven joints: its fingertip cannot slide where "
@@ -37,8 +31,7 @@ Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const 
   if (command.type != CommandType::kRotate) return {};
   if (!command.continuous && std::abs(command.angle_rad) <= parameters.gait.step_rad) return {};
   constexpr const char* kHint =
-      "regrasp rotate with an angle of at most gait.step_rad (20 degrees unless it was set): a "
-      "turn without a regrasp";
+      "regrasp rotate with an angle of at most gait.step_rad (20 degrees unless it was set)";
   if (few)
     return {Verdict::Kind::kBadState,
             "turning by more than gait.step_rad needs a hand of four fingers or more: without the "

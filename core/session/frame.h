@@ -62,7 +62,7 @@ struct ExplorationFrame {
   Criterion criterion = Criterion::kManipulability;
   bool on_stability = false;  ///< `switched`: stability is the objective at this tick
   int cycle = 0;
-  double phi = std::nan("");            ///< NaN until the finger has begun to slide
+  double phi = std::nan("");            ///< NaN until the finger has begun to press
   double gradient_norm = std::nan("");  ///< |P R_WCᵀ grad phi| [1/m]; NaN before the first cycle
   double epsilon = 0;                   ///< its threshold [1/m]
   Vector3d gradient_W = Vector3d::Zero();

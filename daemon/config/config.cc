@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <sstream>
 
@@ -167,7 +168,7 @@ Json Value(const ConfigKey& key, const DaemonConfig& config) {
 }  // namespace
 
 void ReadConfigFile(const std::string& path, DaemonConfig* config) {
-  if (::access(path.c_str(), F_OK) != 0)
+  if (::access(path.c_str(), F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR))
     throw ConfigNotFound(fmt::format("{}: no such file", path));
   if (::access(path.c_str(), R_OK) != 0) throw ConfigError(fmt::format("{}: cannot be read", path));
   std::string text;
