@@ -103,11 +103,10 @@ class ObjectReader {
     const auto pieces = PiecesOf(mesh);
     facts_.pieces = static_cast<int>(pieces.size());
     if (const Parts parts = PartsOf(mesh.vertices, pieces); parts.count > 1)
-      problems_.Warn(
-          collisions_.front().line, element_,
-          fmt::format("{} parts that do not touch, {:.3g} mm apart at least: one rigid body all "
-                      "the same",
-                      parts.count, 1e3 * parts.gap));
+      problems_.Warn(collisions_.front().line, element_,
+                     fmt::format("{} parts that do not touch, {:.3g} mm apart: one rigid body all "
+                                 "the same",
+                                 parts.count, 1e3 * parts.gap));
     object_.vertices_O = std::move(mesh.vertices);
     object_.triangles = std::move(mesh.triangles);
     object_.bounding_radius = 0;

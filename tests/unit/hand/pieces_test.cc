@@ -104,10 +104,10 @@ TEST_F(PiecesTest, FacetsLieAboutTheRoundSurface) {
 }
 
 TEST_F(PiecesTest, PartsFarFromEachOtherAreTold) {
-  const auto told = [&](double at) {
+  const auto told = [&](double at, double up = 0.02) {
     Of(Collisions({{fmt::format("xyz=\"{} 0 0\"", -at), "<box size=\"0.02 0.02 0.02\"/>"},
                    {"", "<box size=\"0.02 0.02 0.02\"/>"},
-                   {"xyz=\"0 0 0.02\"", "<sphere radius=\"0.01\"/>"}}),
+                   {fmt::format("xyz=\"0 0 {}\"", up), "<sphere radius=\"0.01\"/>"}}),
        shape_);
     ModelReport report;
     LoadObjectUrdf(root_ / "objects/thing.urdf", shape_, &report);
@@ -115,6 +115,9 @@ TEST_F(PiecesTest, PartsFarFromEachOtherAreTold) {
   };
   EXPECT_EQ(told(0.0205), "") << "half a millimetre is a gap of rounding";
   EXPECT_EQ(told(0.1), "2 parts that do not touch, 80 mm apart: one rigid body all the same");
+  EXPECT_EQ(told(0.1, 0.025),
+            "3 parts that do not touch, 4.99 mm apart: one rigid body all the same")
+      << "the second and the third (a ball of triangles, a little larger), not the first";
 }
 
 TEST_F(PiecesTest, PrimitivesThatTouchAddUp) {
