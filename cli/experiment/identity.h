@@ -11,8 +11,8 @@ namespace regrasp::cli {
 /// Plan::parameters.
 void AddIdentity(SteppedDaemon* daemon, std::size_t which, Plan* plan);
 
-/// Throws CliError(kRefused) that names the model or program where `daemon`, prepared for the case, is not what
-/// was written down: a model's file or the daemon's program changed since.
+/// Throws CliError(kRefused) that names the model or program where `daemon`, prepared for the case,
+/// is not what was written down: a model's file or the daemon's program changed since.
 void CheckIdentity(SteppedDaemon* daemon, std::size_t which, const Plan& plan);
 
 }  // namespace regrasp::cli

@@ -2,7 +2,8 @@
 
 /// How far the convex hull of a mesh reaches, by direction, and how far a capsule sticks out of it:
 /// between convex bodies that is the largest excess of the one's support over the other's. Over
-/// directions spread evenly, some 6 degrees apart, and axes that are given. Used only by shape_fit.cc.
+/// directions spread evenly, some 6 degrees apart, and axes that are given. Used only by
+/// shape_fit.cc.
 
 #include <vector>
 
