@@ -1,5 +1,6 @@
 #include "daemon/output/recorder.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -12,6 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 constexpr auto kFlushInterval = 200ms;    // what a kill can lose, of wall clock
+constexpr auto kLongestWait = 200ms;      // of the I/O thread, for a disk that is slow
 constexpr double kStateInterval_s = 0.5;  // of simulated time; to go half of it takes some 10 ms
 
 }  // namespace
@@ -70,17 +72,28 @@ bool Recorder::TakeStateDue(const Published& published) {
   return true;
 }
 
+bool Recorder::IsJournal(const Item& item) {
+  return std::holds_alternative<Start>(item) || std::holds_alternative<Entry>(item);
+}
+
 /// What cannot be kept until it is written would be missing in the file, which ends therefore.
 void Recorder::Push(Item item) {
   {
     const std::lock_guard lock(mutex_);
+    const bool journal = IsJournal(item);
     try {
       items_.push_back(std::move(item));
+      if (journal) ++waiting_journal_;
     } catch (const std::bad_alloc&) {
       numbers_.failure = "no memory";
     }
   }
   wake_.notify_one();
+}
+
+void Recorder::AwaitJournal() {
+  std::unique_lock lock(mutex_);
+  written_.wait_for(lock, kLongestWait, [this] { return waiting_journal_ == 0; });
 }
 
 void Recorder::Finish() {
@@ -100,16 +113,20 @@ Recorder::Numbers Recorder::numbers() const {
 
 void Recorder::Run() {
   auto flushed = std::chrono::steady_clock::now();
-  bool ended = false;  // the file takes no more
+  bool ended = false;          // the file takes no more
+  std::ptrdiff_t written = 0;  // of the journal
   for (bool more = true; more;) {
     std::deque<Item> items;
     {
       std::unique_lock lock(mutex_);
+      waiting_journal_ -= written;
+      if (written > 0) written_.notify_all();
       wake_.wait_for(lock, kFlushInterval, [this] { return finishing_ || !items_.empty(); });
       items.swap(items_);
       waiting_samples_ = 0;
       more = !finishing_ || !items.empty();
     }
+    written = std::ranges::count_if(items, IsJournal);
     if (ended) continue;
     try {
       bool flush = !more || std::chrono::steady_clock::now() - flushed >= kFlushInterval;

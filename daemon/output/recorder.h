@@ -38,6 +38,9 @@ class Recorder {
   void Add(const Published& published);
   /// A state to go on from: what the control loop answered to a mark.
   void Add(const JournalNews& mark);
+  /// Waits until the journal as it was handed over is in the file, or the file has ended; 0.2 s at
+  /// most, where the disk is slow.
+  void AwaitJournal();
   /// Whether a state is due at this moment; asked again, the next one.
   bool TakeStateDue(const Published& published);
   /// Writes what is waiting and ends the file. Any thread, once.
@@ -71,6 +74,7 @@ class Recorder {
   };
   using Item = std::variant<Start, Entry, PublishedEvent, Sample, State>;
 
+  static bool IsJournal(const Item& item);
   void Push(Item item);
   void Run();
   void Write(const Item& item);
@@ -102,8 +106,9 @@ class Recorder {
   std::uint64_t last_time_ = 0;
   // Shared.
   mutable std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable wake_, written_;
   std::deque<Item> items_;
+  std::ptrdiff_t waiting_journal_ = 0;
   std::size_t waiting_samples_ = 0;
   bool finishing_ = false;
   Numbers numbers_;

@@ -99,6 +99,7 @@ Outcome RecordStart(Service& service, const Params& params, Client&) {
   }
   service.recording_end.clear();
   service.recorder()->Add(service.newest());
+  service.recorder()->AwaitJournal();
   return {.result = {{"file", file},
                      {"path", (directory / file).string()},
                      {"rate_hz", rate_hz},

@@ -129,10 +129,14 @@ void Service::TakeFrames() {
 }
 
 void Service::TakeInNews() {
+  bool journal = false;
   for (JournalNews item; untaken_ || control_.PopNews(&item); untaken_.reset()) {
     if (!untaken_) untaken_ = std::move(item);
     TakeIn(*untaken_);
+    journal = journal || untaken_->kind != JournalNews::Kind::kMark;
   }
+  // Nobody hears of what a command did before the run file has it.
+  if (journal && recorder_) recorder_->AwaitJournal();
 }
 
 void Service::TakeIn(const JournalNews& news) {

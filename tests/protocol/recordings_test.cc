@@ -58,6 +58,18 @@ TEST_F(Recordings, ReplayToTheSameStates) {
   EXPECT_EQ(list[0]["complete"], true);
 }
 
+TEST_F(Recordings, HoldACommandBeforeAnybodyHearsWhatItDid) {
+  const std::filesystem::path path = client->Result("record.start", {{"rate_hz", 100}})["path"];
+  const std::filesystem::path now = path.parent_path() / "now.mcap";
+  for (std::size_t commands = 1; commands <= 20; ++commands) {
+    Step(100);  // samples, which are in the way
+    client->Result("param.set", {{"name", "control.grip_force"}, {"value", 1 + 0.01 * commands}});
+    Step(1);
+    std::filesystem::copy_file(path, now, std::filesystem::copy_options::overwrite_existing);
+    ASSERT_EQ(run::ReadRunFile(now).segments.at(0).journal->entries.size(), commands);
+  }
+}
+
 TEST_F(Recordings, BegunInTheMiddleHoldTheRunFromItsStart) {
   GraspWithChanges();
   const Json started = client->Result("record.start");
