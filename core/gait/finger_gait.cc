@@ -39,14 +39,15 @@ void FingerGait::Enter(GaitPhase phase) {
   happened_.changed = true;
 }
 
-void FingerGait::StartMotion(const GaitParameters& parameters, const ObjectWrench& wrench) {
+void FingerGait::StartMotion(const ControlTick& tick, const ObjectWrench& wrench) {
+  const GaitParameters& parameters = tick.gait;
   const double left = std::abs(request_.angle_rad) - turned_before_;
   const double due = std::max(0.0, parameters.step_rad - turned_meanwhile_);
   const double step = request_.continuous ? due : std::min(due, left);
   const bool went_on = turned_meanwhile_ > 0;
   turned_meanwhile_ = 0;
   if (went_on && step < parameters.progress && step < left) {
-    BeginCycle();
+    BeginCycle(tick.hand);
     return Enter(GaitPhase::kChoose);
   }
   const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
@@ -59,18 +60,19 @@ void FingerGait::StartMotion(const GaitParameters& parameters, const ObjectWrenc
   Enter(GaitPhase::kObjectMotion);
 }
 
-void FingerGait::EndMotion(const GaitParameters& parameters) {
+void FingerGait::EndMotion(const ControlTick& tick) {
   turned_before_ += manipulation_.travelled();
   if (const int finger = manipulation_.end_finger(); finger >= 0) {
     double& lead = lead_[finger];
     const double missing = manipulation_.length() - manipulation_.travelled();
-    lead = std::min(parameters.lead_max, lead + 0.5 * missing);
+    lead = std::min(tick.gait.lead_max, lead + 0.5 * missing);
   }
-  BeginCycle();
+  BeginCycle(tick.hand);
 }
 
-void FingerGait::BeginCycle() {
-  for (const GaitStep& step : order_) waiting_.add(step.finger);
+void FingerGait::BeginCycle(const HandModel& hand) {
+  for (const GaitStep& step : order_)
+    if (PlacesItsTip(hand.fingers[step.finger])) waiting_.add(step.finger);
   refused_finger_ = -1;
   sought_ = false;
   room_for_ = -1;
@@ -190,7 +192,7 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
   turned_most_ = std::max(turned_most_, turned_before_);
   const bool stale = planned(tick) && stale_cycles_ > kStale * tick.gait.patience;
   if (!stale && idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles))
-    return StartMotion(tick.gait, wrench);
+    return StartMotion(tick, wrench);
   if (stale) {
     std::snprintf(error_, sizeof(error_),
                   "the object cannot turn further: no farther than before in %d cycles",
@@ -215,7 +217,7 @@ void FingerGait::Forgive(const ControlTick& tick, bool held, ObjectWrench* wrenc
 ObjectMotion FingerGait::UpdateMotion(const ControlTick& tick, ObjectWrench* wrench) {
   const ObjectMotion motion = manipulation_.Update(tick, *wrench, home_);
   if (manipulation_.end() == LocalManipulation::End::kNone) return motion;
-  EndMotion(tick.gait);
+  EndMotion(tick);
   Forgive(tick, false, wrench);
   Enter(stop_ || there() ? GaitPhase::kFinish : GaitPhase::kSettle);
   return motion;

@@ -175,10 +175,10 @@ class FingerGait {
   }
   void SearchStance(const ControlTick& tick);
   void Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench);
-  void StartMotion(const GaitParameters& parameters, const ObjectWrench& wrench);
-  void EndMotion(const GaitParameters& parameters);
-  /// Every finger waits for its turn again.
-  void BeginCycle();
+  void StartMotion(const ControlTick& tick, const ObjectWrench& wrench);
+  void EndMotion(const ControlTick& tick);
+  /// Every finger whose tip can be put elsewhere waits for its turn again.
+  void BeginCycle(const HandModel& hand);
   /// The object turns on between two motions, while fingers regrasp.
   ObjectMotion TurnMeanwhile(const ControlTick& tick, const ObjectWrench& wrench);
   /// Whether Algorithm 1 shall run where the finger lands.

@@ -87,7 +87,8 @@ double FingerGait::Grip(const ControlTick& tick) const {
 }
 
 bool FingerGait::MayLeave(const ControlTick& tick, int finger) const {
-  return tick.margins.without[finger] >= MarginNeeded(tick, finger);
+  return PlacesItsTip(tick.hand.fingers[finger]) &&
+         tick.margins.without[finger] >= MarginNeeded(tick, finger);
 }
 
 void FingerGait::Refuse(const ControlTick& tick, int finger) {

@@ -20,7 +20,8 @@ void FingerGait::SearchStance(const ControlTick& tick) {
                  tick.estimate.object_scale, control.max_normal_force, tick.gait.search_step);
   if (search_.margin() < margin_wanted_ && search_.evaluations() < tick.gait.search_trials) return;
   home_.stance = search_.stance();
-  waiting_ = tick.grasp.without(request_.make_room_for);
+  for (int i : tick.grasp.without(request_.make_room_for))
+    if (PlacesItsTip(tick.hand.fingers[i])) waiting_.add(i);
   Enter(GaitPhase::kChoose);
 }
 

@@ -60,6 +60,9 @@ struct Finger {
   int tip_shapes = 1;     ///< the first shapes of the tip link, which feel; the very first has p_LF
 };
 
+/// Whether a tip can be put, or slid, where it shall: three driven joints or more move it.
+inline bool PlacesItsTip(const Finger& finger) { return finger.joints.size() >= 3; }
+
 /// Of a hand of fewer fingers none can leave an object: the others would not hold it.
 inline constexpr int kFewestToRegrasp = 4;
 

@@ -5,8 +5,6 @@
 
 namespace regrasp {
 
-bool PlacesItsTip(const Finger& finger) { return finger.joints.size() >= kFewestJoints; }
-
 bool CanRegrasp(const HandModel& hand) {
   return hand.num_fingers() >= kFewestToRegrasp && std::ranges::all_of(hand.fingers, PlacesItsTip);
 }

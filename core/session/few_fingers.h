@@ -2,8 +2,6 @@
 
 /// What a hand of two or three fingers, or with fingers of one or two driven joints, cannot do.
 
-#include <cstddef>
-
 #include "core/hand/hand_model.h"
 #include "core/session/command.h"
 #include "core/session/parameters.h"
@@ -11,10 +9,6 @@
 
 namespace regrasp {
 
-inline constexpr std::size_t kFewestJoints = 3;  ///< driven ones that place a fingertip
-
-/// Whether a tip can be put, or slid, where it shall: three driven joints or more move it.
-bool PlacesItsTip(const Finger& finger);
 /// Whether the hand can turn an object on and on: four fingers or more, each of which places its
 /// tip.
 bool CanRegrasp(const HandModel& hand);
@@ -23,7 +17,7 @@ bool CanRegrasp(const HandModel& hand);
 /// do not hold an object that turns about the line between them. That is every exploration, and a
 /// rotation by more than one motion of the gait (gait.step_rad). A fingertip that fewer than three
 /// driven joints move can neither slide nor land where it shall: that finger does not explore, and
-/// its hand turns no farther than that one motion either. (Within it the gait may regrasp.)
+/// its hand turns no farther than that one motion either, within which it stays where it is.
 Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const Command& command);
 
 /// Refuses parameters `after` that would take from a job that runs with `before` what the rule
