@@ -5,7 +5,6 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +15,7 @@
 #include <cstring>
 
 #include "core/common/nearest_name.h"
+#include "core/files/draft.h"
 #include "core/files/json_text.h"
 #include "core/files/names.h"
 #include "core/hand/scenario.h"
@@ -182,7 +182,7 @@ int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source, bool u
   StartLog(config);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);            // a file that may not grow is an error, not the end
-  ::umask(::umask(0) | S_IWGRP | S_IWOTH);  // nobody else changes what is written
+  KeepFromOthers();
   RaiseDescriptorLimit(config.max_clients);
   MemoryReserve::Install(kMemoryReserve);
   Daemon daemon(config);

@@ -20,15 +20,19 @@ namespace {
 // A daemon that sends a longer line than this is not ours.
 constexpr std::size_t kMaxReplyBytes = 64u << 20;
 
+void CheckLength(const std::string& path) {
+  constexpr std::size_t kMost = sizeof sockaddr_un{}.sun_path - 1;
+  if (path.empty() || path.size() > kMost)
+    throw CliError(
+        kUsage,
+        fmt::format("socket path '{}' has {} bytes; allowed are 1 to {}", path, path.size(), kMost),
+        "regrasp -s /tmp/regrasp.sock status");
+}
+
 sockaddr_un Address(const std::string& path) {
+  CheckLength(path);
   sockaddr_un address = {};
   address.sun_family = AF_UNIX;
-  if (path.empty() || path.size() >= sizeof address.sun_path) {
-    throw CliError(kUsage,
-                   fmt::format("socket path '{}' has {} bytes; allowed are 1 to {}", path,
-                               path.size(), sizeof address.sun_path - 1),
-                   "regrasp -s /tmp/regrasp.sock status");
-  }
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
   return address;
 }
@@ -232,6 +236,14 @@ std::optional<Json> Client::NextEvent(double timeout_s) {
   Json event = std::move(events_.front());
   events_.pop_front();
   return event;
+}
+
+void CheckSocketPath(const std::string& path) {
+  CheckLength(path);
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) == 0 && !S_ISSOCK(info.st_mode))
+    throw CliError(kIo, fmt::format("{} exists and is not a socket; left alone", path),
+                   "regrasp -s OTHER_PATH up");
 }
 
 bool Listening(const std::string& path) {

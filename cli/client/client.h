@@ -65,5 +65,7 @@ class Client {
 
 /// True if something accepts connections at `path`.
 bool Listening(const std::string& path);
+/// Throws CliError where no daemon could listen: the path is too long, or something else is there.
+void CheckSocketPath(const std::string& path);
 
 }  // namespace regrasp::cli

@@ -89,6 +89,7 @@ std::vector<char*> Environment(Surroundings surroundings) {
   ::dup2(input_fd, STDIN_FILENO);
   ::dup2(log_fd, STDOUT_FILENO);
   ::dup2(log_fd, STDERR_FILENO);
+  ::close_range(3, ~0U, 0);  // locks and pipes of whoever called this program
   // Before they are let through: a handler of this program would swallow what waits to end it.
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::signal(number, SIG_DFL);
   sigset_t none;
@@ -141,6 +142,7 @@ std::string AskDaemonProgram(std::vector<std::string> words, const std::string& 
 StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::string>& arguments,
                           double timeout_s, Surroundings surroundings) {
   const std::string daemon = FindDaemon();
+  CheckSocketPath(socket);  // before anything is made there
   const fs::path directory = fs::absolute(socket).parent_path();
   std::error_code error;
   if (!fs::exists(directory)) {

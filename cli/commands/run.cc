@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "cli/client/config_file.h"
 #include "cli/client/context.h"
@@ -96,6 +97,13 @@ std::string Differences(const Json& wanted, const Invocation& invocation, const 
   return text;
 }
 
+/// "process 123", as the daemon's lock file tells.
+std::string HolderOf(const std::string& socket) {
+  std::ifstream lock(socket + ".lock");
+  long pid = 0;
+  return lock >> pid && pid > 0 ? fmt::format("process {}", pid) : "a daemon";
+}
+
 /// Whether a daemon answers on `socket`; one that is about to begin or to end is waited for.
 bool Running(const std::string& socket, double timeout_s) {
   constexpr double kSlice_s = 0.05;
@@ -103,10 +111,10 @@ bool Running(const std::string& socket, double timeout_s) {
     if (Listening(socket)) return true;
     if (WaitForLock(socket, kSlice_s)) return false;
     if (Clock::now() > deadline)
-      throw CliError(
-          kTimeout,
-          fmt::format("a daemon holds {}.lock but does not answer after {:g} s", socket, timeout_s),
-          "regrasp doctor");
+      throw CliError(kTimeout,
+                     fmt::format("{} holds {}.lock but does not answer after {:g} s",
+                                 HolderOf(socket), socket, timeout_s),
+                     "ps -fp PID, kill PID, then regrasp up");
   }
 }
 

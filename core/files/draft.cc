@@ -7,11 +7,15 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
+
+#include "core/common/fnv1a.h"
 
 namespace regrasp {
 namespace {
@@ -33,6 +37,18 @@ bool IsThere(const std::string& path) {
   return ::lstat(path.c_str(), &info) == 0;
 }
 
+/// Where a process number means what it means here: this boot of this machine, this namespace.
+const std::string& PidSpace() {
+  static const std::string space = [] {
+    std::string text;
+    std::ifstream("/proc/sys/kernel/random/boot_id") >> text;
+    std::error_code ignored;
+    text += fs::read_symlink("/proc/self/ns/pid", ignored).string();
+    return std::to_string(Fnv1a(text));
+  }();
+  return space;
+}
+
 void Sync(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) Fail("open", path);
@@ -41,6 +57,19 @@ void Sync(const std::string& path) {
   // Some file systems cannot, and say so.
   if (failed != 0 && failed != EINVAL && failed != ENOTSUP)
     Fail("write", path, std::strerror(failed));
+}
+
+/// Whether whoever made the draft `path` may still be at it. `name`: what follows ".draft-".
+bool MakerMayWrite(const std::string& name, const fs::path& path) {
+  const std::size_t end = name.find('-');
+  const pid_t maker = std::atoi(name.c_str());
+  if (end != std::string::npos &&
+      name.compare(end + 1, PidSpace().size() + 1, PidSpace() + "-") == 0)
+    return maker > 0 && maker != ::getpid() && (::kill(maker, 0) == 0 || errno == EPERM);
+  // In a container or on another machine: who writes does so now and then.
+  std::error_code error;
+  const auto written = fs::last_write_time(path, error);
+  return !error && fs::file_time_type::clock::now() - written < std::chrono::hours(24);
 }
 
 void SyncTree(const std::string& path) {
@@ -64,8 +93,8 @@ Draft::Draft(std::string target, Existing existing, Kind kind)
   }
   static std::atomic<unsigned> number{0};
   for (int attempt = 0;; ++attempt) {
-    path_ = parent / (".draft-" + std::to_string(::getpid()) + "-" + std::to_string(++number) +
-                      whole.extension().string());
+    path_ = parent / (".draft-" + std::to_string(::getpid()) + "-" + PidSpace() + "-" +
+                      std::to_string(++number) + whole.extension().string());
     if (kind == Kind::kDirectory) {
       if (::mkdir(path_.c_str(), 0777) == 0) break;
       if (errno != EEXIST || attempt == 100) Fail("make the directory", path_);
@@ -114,6 +143,8 @@ void WriteWhole(const std::string& target, std::string_view text, Draft::Existin
   draft.Commit(durable);
 }
 
+void KeepFromOthers() { ::umask(::umask(0) | S_IWGRP | S_IWOTH); }
+
 void RefuseMissingDirectory(const std::string& target) {
   const fs::path directory = fs::absolute(target).parent_path();
   if (!fs::is_directory(directory))
@@ -127,11 +158,9 @@ void RemoveAbandonedDrafts(const std::string& directory) {
     const std::string name = entries->path().filename().string();
     constexpr std::string_view kBegin = ".draft-";
     if (!name.starts_with(kBegin)) continue;
-    const pid_t maker = std::atoi(name.c_str() + kBegin.size());
-    const bool alive =
-        maker > 0 && maker != ::getpid() && (::kill(maker, 0) == 0 || errno == EPERM);
-    std::error_code ignored;
-    if (!alive) fs::remove_all(entries->path(), ignored);
+    if (!MakerMayWrite(name.substr(kBegin.size()), entries->path()))
+      fs::remove_all(entries->path(), error);
+    error.clear();
   }
 }
 

@@ -43,8 +43,12 @@ void WriteWhole(const std::string& target, std::string_view text, Draft::Existin
 /// `target` would be in is none, which a Draft would make.
 void RefuseMissingDirectory(const std::string& target);
 
-/// Removes what writers that have been killed left beside the files of a directory. Never throws;
-/// what cannot be removed stays.
+/// For a program, at its start: nobody but the user may change what it writes (umask 022 at least).
+void KeepFromOthers();
+
+/// Removes what writers that have been killed left beside the files of a directory; of writers that
+/// cannot be asked (another machine's, another container's) what was not written to for a day.
+/// Never throws; what cannot be removed stays.
 void RemoveAbandonedDrafts(const std::string& directory);
 
 }  // namespace regrasp

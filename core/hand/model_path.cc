@@ -63,10 +63,12 @@ std::vector<fs::path> ModelSearchPath(const std::string& models_dir) {
       throw ModelError(fmt::format("{}: $REGRASP_MODELS_DIR is not a directory", named));
     add(named);
   }
-  add(REGRASP_SOURCE_MODELS_DIR);
+  // Programs are installed in bin/ and libexec/regrasp/, both beside share/.
   std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  if (!program.empty()) add(program.parent_path().parent_path() / "share/regrasp/models");
+  const fs::path bin = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const fs::path& prefix : {bin.parent_path(), bin.parent_path().parent_path()})
+    if (!prefix.empty()) add(prefix / "share/regrasp/models");
+  add(REGRASP_SOURCE_MODELS_DIR);
   add(REGRASP_INSTALLED_MODELS_DIR);
   return path;
 }
@@ -87,6 +89,11 @@ fs::path FindModel(const std::string& name, const char* kind,
       const fs::path file = directory / kind / (name + ".urdf");
       if (IsFile(file)) return file;
     }
+  if (search_path.empty())
+    throw ModelError(
+        fmt::format("there is no model \"{}\": no directory of models was found "
+                    "($REGRASP_MODELS_DIR names one)",
+                    name));
   std::vector<std::string> directories;
   for (const fs::path& directory : search_path) directories.push_back((directory / kind).string());
   throw ModelError(fmt::format("there is no model \"{}\" in {}; available are {}", name,

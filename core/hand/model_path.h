@@ -11,7 +11,8 @@
 namespace regrasp {
 
 /// Directories that are searched for models, in order: `models_dir` if given, $REGRASP_MODELS_DIR,
-/// the source tree this was built from, the installed share/regrasp/models. Throws ModelError where
+/// share/regrasp/models beside the program's bin/, the source tree this was built from, the share/ it was
+/// configured for. Throws ModelError where
 /// one of the first two is no directory.
 std::vector<std::filesystem::path> ModelSearchPath(const std::string& models_dir = "");
 

@@ -88,8 +88,14 @@ Outcome RecordStart(Service& service, const Params& params, Client&) {
   const std::string file =
       CheckedFileName(params.Has("file") ? params.String("file") : FreeName(directory), "file",
                       {".mcap"}, "run.mcap");
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error)
+    throw RpcException(
+        ErrorCode::kIo,
+        fmt::format("cannot make the directory {}: {}", directory.string(), error.message()),
+        "regrasp up --output-dir DIR");
   try {
-    fs::create_directories(directory);
     service.SetRecorder(std::make_shared<Recorder>(directory / file, rate_hz, service.journal(),
                                                    service.run(),
                                                    service.config().budgets.recording_bytes));

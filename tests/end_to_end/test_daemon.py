@@ -38,6 +38,32 @@ class UpAndDown(Case):
                 self.assertIn(cause, done.stderr)
                 self.assertEqual(done.stdout, "")
 
+    def test_what_cannot_be_a_socket_is_refused_before_anything_is_made(self):
+        for path in (self.dir / "d" / ("n" * 120), self.dir / "file"):
+            (self.dir / "file").touch()
+            done = self.regrasp("-s", path, "up")
+            self.assertIn(str(path), done.stderr)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertEqual([entry.name for entry in self.dir.iterdir()], ["file"])
+
+    def test_it_keeps_nothing_that_its_caller_had_open(self):
+        read, write = os.pipe()
+        self.addCleanup(self.regrasp, "down")
+        up = subprocess.run([str(REGRASP), "-s", str(self.socket), "up", "--models-dir", SOURCE / "models"], env=environment(), pass_fds=[write],
+                            capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertEqual(up.returncode, 0, up.stderr)
+        os.close(write)
+        os.set_blocking(read, False)
+        self.assertEqual(os.read(read, 1), b"")  # at its end: nobody can write any more
+        os.close(read)
+
+    def test_one_whose_socket_file_was_removed_is_named(self):
+        self.expect(0, "up", "--models-dir", SOURCE / "models")
+        pid = self.json("status")["pid"]
+        self.socket.unlink()
+        self.addCleanup(os.kill, pid, signal.SIGTERM)
+        self.assertIn(f"process {pid} holds {self.socket}.lock", self.refused(4, "--timeout", "0.5", "up")[0])
+
     def test_a_stale_socket_is_taken_over(self):
         up = self.json("up", "--models-dir", SOURCE / "models")
         os.kill(up["pid"], 9)

@@ -16,7 +16,7 @@ import subprocess
 import time
 import unittest
 
-from harness import BIN, DaemonCase, environment
+from harness import BIN, DaemonCase, HANG_S, REGRASP, environment
 from system_case import SystemCase
 
 KILLS = int(os.environ.get("REGRASP_KILLS", "2"))
@@ -52,6 +52,13 @@ class Outputs(SystemCase):
         for path in written:
             self.assertEqual(path.stat().st_mode & 0o022, 0, path)
         wire.close()
+        for words in (["export", self.out / "r.mcap", "--format", "csv", "-o", self.dir / "csv"], ["export", self.out / "r.mcap", "--format", "npz", "-o", self.dir / "r.npz"],
+                      ["param", "save", self.dir / "p.toml"]):
+            done = subprocess.run([str(REGRASP), "-s", str(self.socket), *map(str, words)], env=environment(), capture_output=True, text=True, timeout=HANG_S,
+                                  preexec_fn=lambda: os.umask(0), check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        for path in [self.dir / "csv", self.dir / "csv" / "joints.csv", self.dir / "r.npz", self.dir / "p.toml"]:
+            self.assertEqual(path.stat().st_mode & 0o022, 0, path)
 
 
 class Kills(SystemCase):

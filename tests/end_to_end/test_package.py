@@ -43,6 +43,9 @@ class Package(Case):
         self.assertRegex(self.field("Version"), r"^\d+\.\d+\.\d+$")
         for words in (["usr/bin/regrasp", "version"], ["usr/bin/regraspd", "--check-config"]):
             subprocess.run([self.root / words[0], *words[1:]], env=environment(), check=True, capture_output=True, timeout=HANG_S)
+        # The models are those beside the programs, also for those in libexec.
+        nowhere = subprocess.run([self.root / "usr/bin/regrasp", "object", "show", "unicorn"], env=environment(), capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertIn(f'no model "unicorn" in {self.root / "usr/share/regrasp/models/objects"}', nowhere.stderr)
         module = subprocess.run(["python3", "-c", "import regrasp; print(regrasp.__file__)"], env=environment(PYTHONPATH=str(self.root / "usr/lib/python3/dist-packages")),
                                 check=True, capture_output=True, text=True, timeout=HANG_S).stdout
         self.assertTrue(module.startswith(str(self.root)), module)

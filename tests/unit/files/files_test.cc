@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -128,6 +129,24 @@ TEST_F(Files, AppearWholeOrNotAtAll) {
   WriteWhole(target, "other", Draft::Existing::kReplace);
   EXPECT_EQ(ReadRegularFile(target, 100), "other");
   EXPECT_EQ(Count(), 1u);
+}
+
+TEST_F(Files, OfWritersThatCannotBeAskedStayForADay) {
+  const pid_t gone = fork();
+  if (gone == 0) _exit(0);
+  ASSERT_EQ(waitpid(gone, nullptr, 0), gone);
+  const Draft ours((directory / "a.txt").string(), Draft::Existing::kKeep);
+  std::string killed = fs::path(ours.path()).filename().string();
+  killed.replace(7, killed.find('-', 7) - 7, std::to_string(gone));  // .draft-PID-...
+  const std::string elsewhere = ".draft-" + std::to_string(gone) + "-12345-1.txt";
+  const std::string old = ".draft-" + std::to_string(gone) + "-12345-2.txt";
+  for (const std::string& name : {killed, elsewhere, old})
+    std::ofstream(directory / name) << "half";
+  fs::last_write_time(directory / old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  RemoveAbandonedDrafts(directory.string());
+  EXPECT_FALSE(fs::exists(directory / killed));
+  EXPECT_FALSE(fs::exists(directory / old));
+  EXPECT_TRUE(fs::exists(directory / elsewhere));
 }
 
 TEST_F(Files, DoNotTakeANameThatWasTakenMeanwhile) {
