@@ -70,13 +70,10 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
 }
 
 std::vector<Start> Starts(const LoadedScenario& model, std::uint64_t seed) {
-  SessionConfig config;
-  config.model = model;
-  config.parameters = DefaultParameters(model);
+  const StartParameters spread = DefaultParameters(model).start;
   std::vector<Start> starts;
   for (unsigned k = 0; k < kStarts; ++k) {
-    config.seed = seed + k;
-    const StartPosture start = MakeStart(config);
+    const StartPosture start = MakeStart(model.hand, model.scenario, spread, seed + k);
     starts.push_back({start.q_open, start.X_WO.translation() - model.scenario.X_WO.translation()});
   }
   return starts;

@@ -73,6 +73,9 @@ struct ControlParameters {
   double feel_least = 0.1;      ///< coefficient counted on, at least
   double feel_most = 0.7;       ///< ... and at most, however rough it feels
   // Grasping.
+  /// Share of the object's way from where the closed posture is made for it that the posture
+  /// follows, as sensed when the grasp begins.
+  double follow_object = 1;
   double close_speed = 0.6;         ///< joints on their way from preshape to closed [rad/s]
   double close_force = 0.15;        ///< a finger that has touched waits with this force [N]
   double touch_s = 0.005;           ///< contact for so long is a touch
@@ -81,6 +84,8 @@ struct ControlParameters {
   double grip_ramp_s = 0.3;         ///< from waiting force to grip
   double stand_in_release_s = 0.5;  ///< after the ramp the stand-in lets go
   double settle_s = 0.7;            ///< then so long until `holding`
+  double rest_speed = 0.002;        ///< of the object, above which it is not held yet [m/s]
+  double rest_s = 3;                ///< after settling, to come to rest; then the grasp has failed
   // How a finger is taken to follow an object that turns: gait and the criterion reserve.
   ReachRule reach;
   // Stability.

@@ -3,17 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/hand/finger_reach.h"
+
 namespace regrasp {
-void GraspSequence::Start(const Estimate& estimate) {
+namespace {
+
+constexpr int kSteps = 20;  // of the inverse kinematics
+
+}  // namespace
+
+void GraspSequence::Start(const ControlTick& tick, const JointVector& q_closed,
+                          const Vector3d& p_WO_expected) {
   phase_ = Phase::kClose;
   ticks_ = 0;
   progress_ = 0;
-  q_start_ = estimate.q;
+  q_start_ = tick.estimate.q;
+  q_closed_ = q_closed;
+  const Vector3d way = tick.control.follow_object * (tick.estimate.p_WO - p_WO_expected);
+  for (int i = 0; i < tick.hand.num_fingers() && !way.isZero(); ++i) {
+    const FingerPosture closed = PostureAt(tick.hand, i, AnglesOf(tick.hand, i, q_closed));
+    const FingerPosture moved = ReachFor(tick.hand, i, closed, closed.p_WF + way, 0, kSteps);
+    for (std::size_t k = 0; k < tick.hand.fingers[i].joints.size(); ++k)
+      q_closed_[tick.hand.fingers[i].joints[k]] = moved.q[static_cast<Eigen::Index>(k)];
+  }
   touched_.fill(false);
+  drift_ = Drift();
 }
 
-void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
-                           HybridController* controller, FingerTasks* tasks) {
+void GraspSequence::Watch(const ControlTick& tick) {
+  drift_.sum += tick.estimate.p_WO;
+  const double window_s = std::max(tick.dt, 0.5 * tick.control.settle_s);
+  if (++drift_.ticks * tick.dt < window_s) return;
+  const Vector3d mean = drift_.sum / drift_.ticks;
+  drift_.speed = (mean - drift_.mean_before).norm() / window_s;
+  drift_ = {Vector3d::Zero(), mean, 0, drift_.speed};
+}
+
+void GraspSequence::Update(const ControlTick& tick, HybridController* controller,
+                           FingerTasks* tasks) {
   const Estimate& estimate = tick.estimate;
   const ControlParameters& parameters = tick.control;
   const int num_fingers = tick.hand.num_fingers();
@@ -22,7 +49,7 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
   const double time = ticks_ * tick.dt;
 
   if (phase_ == Phase::kClose) {
-    const double travel = (q_closed - q_start_).cwiseAbs().maxCoeff();
+    const double travel = (q_closed_ - q_start_).cwiseAbs().maxCoeff();
     const double duration = travel / parameters.close_speed;
     const double s = std::min(1.0, time / duration);
     const auto touch_ticks = std::lround(parameters.touch_s / tick.dt);
@@ -49,7 +76,7 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
       const std::vector<int>& joints = tick.hand.fingers[i].joints;
       task.q_target.resize(static_cast<Eigen::Index>(joints.size()));
       for (std::size_t k = 0; k < joints.size(); ++k)
-        task.q_target[k] = q_start_[joints[k]] + s * (q_closed[joints[k]] - q_start_[joints[k]]);
+        task.q_target[k] = q_start_[joints[k]] + s * (q_closed_[joints[k]] - q_start_[joints[k]]);
     }
     progress_ = 0.6 * s;
     const bool all = touched == num_fingers;
@@ -89,7 +116,12 @@ void GraspSequence::Update(const ControlTick& tick, const JointVector& q_closed,
     }
   } else if (phase_ == Phase::kAlone) {
     progress_ = 0.8 + 0.2 * std::min(1.0, time / parameters.settle_s);
-    if (time > parameters.settle_s) phase_ = Phase::kDone;
+    Watch(tick);
+    if (time <= parameters.settle_s) return;
+    if (parameters.rest_speed == 0 || drift_.speed <= parameters.rest_speed)
+      phase_ = Phase::kDone;
+    else if (time > parameters.settle_s + parameters.rest_s)
+      phase_ = Phase::kRestless;
   }
 }
 

@@ -18,34 +18,54 @@ class GraspSequence {
     kGrip,   ///< all hold, caps ramp from waiting force to grip; the stand-in still holds
     kAlone,  ///< the stand-in has let go; settling
     kDone,
-    kFailed,  ///< fewer than three fingers touched, of fewer than three not all
+    kFailed,    ///< fewer than three fingers touched, of fewer than three not all
+    kRestless,  ///< alone, but the object has not come to rest
   };
 
-  void Start(const Estimate& estimate);
+  /// `q_closed` [rad] is made for an object at `p_WO_expected` [m]; see control.follow_object.
+  void Start(const ControlTick& tick, const JointVector& q_closed, const Vector3d& p_WO_expected);
   /// One tick: writes one task per finger. Starts the holding controller when it grips.
-  void Update(const ControlTick& tick, const JointVector& q_closed, HybridController* controller,
-              FingerTasks* tasks);
+  void Update(const ControlTick& tick, HybridController* controller, FingerTasks* tasks);
 
   Phase phase() const { return phase_; }
   /// The stand-in shall hold the object.
   bool needs_stand_in() const { return phase_ < Phase::kAlone || phase_ == Phase::kFailed; }
+  /// Of the object, as sensed, between the means of the last two windows of half settle_s [m/s].
+  double drift_speed() const { return drift_.speed; }
   /// 0 .. 1.
   double progress() const { return progress_; }
   template <typename V>
   void Fields(V& v) {
-    v("phase", phase_, Phase::kFailed);
+    v("phase", phase_, Phase::kRestless);
     v("ticks", ticks_);
     v("progress", progress_);
     v("q_start", q_start_);
+    v("q_closed", q_closed_);
     v("touched", touched_);
+    v("drift", drift_);
   }
 
  private:
+  struct Drift {
+    Vector3d sum = Vector3d::Zero(), mean_before = Vector3d::Zero();  // of p_WO [m]
+    int ticks = 0;                                                    // in this window
+    double speed = 0;                                                 // [m/s]
+    template <typename V>
+    void Fields(V& v) {
+      v("sum", sum);
+      v("mean_before", mean_before);
+      v("ticks", ticks);
+      v("speed", speed);
+    }
+  };
+  void Watch(const ControlTick& tick);
+
   Phase phase_ = Phase::kIdle;
   int ticks_ = 0;  // in this phase
   double progress_ = 0;
-  JointVector q_start_;
+  JointVector q_start_, q_closed_;
   std::array<bool, kMaxFingers> touched_{};
+  Drift drift_;
 };
 
 }  // namespace regrasp

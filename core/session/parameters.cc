@@ -20,6 +20,7 @@ constexpr std::string_view kPaper = "paper";
 // name | words | meaning | source | member, and name | meaning | source | member for a boolean.
 constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.close_force", "N", 0.02, 2, "A finger that has touched while the hand closes waits with this force.", kOurs, [](P& p) { return &p.control.close_force; }),
+  Row("control.follow_object", "", 0, 1, "How far the closed posture follows the object from where the scenario expects it to where it is sensed when the grasp begins: 0 not at all, 1 all the way.", kOurs, [](P& p) { return &p.control.follow_object; }),
   Row("control.close_speed", "rad/s", 0.05, 3, "Speed of the fastest joint while the hand closes.", kOurs, [](P& p) { return &p.control.close_speed; }),
   Row("control.contact_filter_s", "s", 0, 1, "Time constant of the low pass on contact points and normals, in the fingertip's frame.", kMeasured, [](P& p) { return &p.control.contact_filter_s; }),
   Row("control.contact_from_normal", "Place a contact on the fingertip's known surface by its sensed normal, instead of trusting the sensed position.", kMeasured, [](P& p) { return &p.control.contact_from_normal; }),
@@ -68,6 +69,8 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.rotation_integral", "N m/(rad s)", 0, 5, "Integral gain from object orientation error to torque.", kMeasured, [](P& p) { return &p.control.rotation_integral; }),
   Row("control.rotation_stiffness", "N m/rad", 0, 5, "Proportional gain from object orientation error to torque.", kMeasured, [](P& p) { return &p.control.rotation_stiffness; }),
   Row("control.settle_s", "s", 0, 10, "Time between the stand-in letting go and the state holding.", kOurs, [](P& p) { return &p.control.settle_s; }),
+  Row("control.rest_speed", "m/s", 0, 0.1, "Speed of the object, as sensed, above which a grasp has not come to rest; 0: not asked.", kOurs, [](P& p) { return &p.control.rest_speed; }),
+  Row("control.rest_s", "s", 0, 60, "Time after settling in which the object must come to rest; then the grasp has failed.", kOurs, [](P& p) { return &p.control.rest_s; }),
   Row("control.slide_force_limit", "N", 0.05, 5, "Largest tangential force of a sliding finger.", kOurs, [](P& p) { return &p.control.slide_force_limit; }),
   Row("control.slide_friction_share", "", 0, 1, "Share of a sliding finger's normal force assumed to drag on the object.", kMeasured, [](P& p) { return &p.control.slide_friction_share; }),
   Row("control.slide_stiffness", "N/m", 10, 2000, "Tangential stiffness of a sliding finger about its reference.", kOurs, [](P& p) { return &p.control.slide_stiffness; }),

@@ -47,12 +47,11 @@ void Displace(const HandModel& hand, double displacement, const Vector3d& p_WO,
 
 }  // namespace
 
-StartPosture MakeStart(const SessionConfig& config) {
-  const HandModel& hand = config.model.hand;
-  const Scenario& scenario = config.model.scenario;
-  const StartParameters& spread = config.parameters.start;
-  RandomStream random(config.seed, kStartStream);
-  StartPosture start{scenario.q_preshape, scenario.q_closed, scenario.X_WO};
+StartPosture MakeStart(const HandModel& hand, const Scenario& scenario,
+                       const StartParameters& spread, std::uint64_t seed) {
+  RandomStream random(seed, kStartStream);
+  StartPosture start{scenario.q_preshape, scenario.q_closed, scenario.X_WO,
+                     scenario.X_WO.translation()};
   for (int j = 0; j < hand.num_joints(); ++j) {
     // The same offset for both, so that the fingers really touch elsewhere.
     const double offset = spread.joint_sigma_rad * random.Normal();

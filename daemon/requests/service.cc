@@ -4,6 +4,7 @@
 
 #include "core/files/draft.h"
 #include "core/hand/kinematics.h"
+#include "core/session/start.h"
 #include "core/world/overlap_text.h"
 #include "daemon/output/output_file.h"
 #include "daemon/output/recorder.h"
@@ -31,12 +32,13 @@ void Service::PrepareModelText() {
 }
 
 void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
-  const Scenario& scenario = config_.control.session.model.scenario;
+  const StartPosture start = MakeStart(hand(), config_.control.session.model.scenario,
+                                       accepted_.parameters.start, accepted_.seed);
   KinematicsData data;
-  ForwardKinematics(hand(), scenario.q_preshape, &data);
+  ForwardKinematics(hand(), start.q_open, &data);
   const std::vector<Isometry3d> X_WL(
       data.X_WL.begin(), data.X_WL.begin() + static_cast<std::ptrdiff_t>(hand().links.size()));
-  const StartOverlap overlap = DeepestOverlap(hand(), X_WL, *object, scenario.X_WO);
+  const StartOverlap overlap = DeepestOverlap(hand(), X_WL, *object, start.X_WO);
   Accepted& accepted = Accept();
   accepted.object = std::move(object);
   accepted.warnings.clear();

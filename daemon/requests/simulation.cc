@@ -94,7 +94,7 @@ std::uint64_t PostReset(Service& service, std::uint64_t seed,
   service.Accept().seed = seed;
   Parameters& parameters = service.Accept().parameters;
   parameters = ParametersAfterReset(parameters, object.get());
-  if (object) service.AcceptObject(object);
+  service.AcceptObject(object ? object : service.accepted().object);
   return barrier;
 }
 

@@ -20,12 +20,12 @@ Verdict GraspActivity::MayStart(const Command&, const ActivityContext& context) 
 }
 
 void GraspActivity::Start(const Command&, const ActivityContext& context) {
-  sequence_.Start(context.now.estimate);
+  sequence_.Start(context.now, context.start.q_closed, context.start.p_WO_expected);
 }
 
 ActivityStep GraspActivity::Update(const ActivityContext& context) {
   World& world = context.world;
-  sequence_.Update(context.now, context.start.q_closed, &context.controller, &context.tasks);
+  sequence_.Update(context.now, &context.controller, &context.tasks);
   context.job.progress = std::min(0.99, sequence_.progress());
   if (world.stand_in() != sequence_.needs_stand_in()) {
     world.SetStandIn(sequence_.needs_stand_in());
@@ -33,6 +33,12 @@ ActivityStep GraspActivity::Update(const ActivityContext& context) {
                      world.stand_in() ? "holds the object" : "let go");
   }
   if (sequence_.phase() == GraspSequence::Phase::kDone) return ActivityStep::Ended(JobState::kDone);
+  if (sequence_.phase() == GraspSequence::Phase::kRestless) {
+    char why[96];
+    std::snprintf(why, sizeof why, "the object does not come to rest: it moves at %.1f mm/s",
+                  1e3 * sequence_.drift_speed());
+    return ActivityStep::Failed(why);
+  }
   if (sequence_.phase() != GraspSequence::Phase::kFailed) return {};
   context.ToPosture(context.start.q_open);
   return ActivityStep::Failed("fewer than three fingers touched the object", SessionState::kIdle);

@@ -23,11 +23,11 @@ class GraspSequenceTest : public ::testing::Test {
     for (int i = touching; i < hand_.num_fingers(); ++i)
       reading.fingertips[static_cast<std::size_t>(i)].in_contact = false;
     StateEstimator estimator(hand_, kDt);
-    sequence_.Start(estimator.Update(reading, parameters_));
+    Start(estimator.Update(reading, parameters_));
     double progress = 0;
     for (ticks_ = 0; ticks_ < max_ticks; ++ticks_) {
       const Estimate& e = estimator.Update(reading, parameters_);
-      sequence_.Update(TickOf(e), scenario_.scenario.q_closed, &controller_, &tasks_);
+      sequence_.Update(TickOf(e), &controller_, &tasks_);
       EXPECT_GE(sequence_.progress(), progress);  // never goes back
       progress = sequence_.progress();
       held_alone_ += !sequence_.needs_stand_in();
@@ -35,6 +35,10 @@ class GraspSequenceTest : public ::testing::Test {
       if (sequence_.phase() == Phase::kDone || sequence_.phase() == Phase::kFailed) return true;
     }
     return false;
+  }
+
+  void Start(const Estimate& e) {
+    sequence_.Start(TickOf(e), scenario_.scenario.q_closed, scenario_.scenario.X_WO.translation());
   }
 
   ControlTick TickOf(const Estimate& e) const {
@@ -85,10 +89,10 @@ TEST_F(GraspSequenceTest, ClosesNoFasterThanItsSpeed) {
   for (FingertipReading& r : reading.fingertips) r.in_contact = false;
   StateEstimator estimator(hand_, kDt);
   const Estimate& e = estimator.Update(reading, parameters_);
-  sequence_.Start(e);
+  Start(e);
   FingerTasks before;
   for (int tick = 0; tick < 8000 && sequence_.phase() != Phase::kFailed; ++tick) {
-    sequence_.Update(TickOf(e), scenario_.scenario.q_closed, &controller_, &tasks_);
+    sequence_.Update(TickOf(e), &controller_, &tasks_);
     if (tick > 0 && sequence_.phase() == Phase::kClose) {
       for (std::size_t i = 0; i < tasks_.size(); ++i)
         ASSERT_LE((tasks_[i].q_target - before[i].q_target).cwiseAbs().maxCoeff(),
