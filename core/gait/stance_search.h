@@ -1,7 +1,8 @@
 #pragma once
 
-/// Looks for contacts near the present ones from which the opposing finger may leave: what the
-/// paper's state S_F is for ("before the thumb leaves, the grasp without it is made stable").
+/// Looks for contacts near the present ones from which the opposing finger may leave. The paper's
+/// state S_F has the same end: there "the grasp stability is chosen as the objective function", the
+/// thumb being "excluded from the holding task".
 
 #include "core/common/random.h"
 #include "core/gait/stance.h"
