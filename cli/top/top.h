@@ -4,7 +4,7 @@
 
 namespace regrasp::cli {
 
-/// The full-screen dashboard; see INTERFACE.md.
+/// The full-screen dashboard; keys and panels: regrasp(1), top.
 ExitCode Top(Context& context, const Invocation& invocation);
 
 }  // namespace regrasp::cli

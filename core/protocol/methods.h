@@ -10,7 +10,7 @@
 
 namespace regrasp {
 
-/// Limits of the wire (rules 2, 3 and 6).
+/// Limits of the wire (docs/protocol.md: Lines, Requests, Slow clients).
 inline constexpr std::size_t kMaxRequestBytes = 64 * 1024;  ///< of one line, without its line end
 inline constexpr int kMaxRequestDepth = 32;                 ///< nested arrays and objects
 inline constexpr std::size_t kMaxBatch = 32;                ///< requests per line

@@ -24,7 +24,7 @@ struct EvaluateInput {
   double max_force = std::numeric_limits<double>::infinity();  ///< cap on normal forces [N], > 0
 };
 
-/// What INTERFACE calls the answer of `evaluate`.
+/// What `evaluate` answers; written out by evaluate_json.h.
 struct EvaluateOutput {
   /// Every row of the table of measures; of hard fingers where a measure knows no others. None for
   /// one that only a request may ask for, of more than kMaxHullWrenches edges together: the facets

@@ -12,7 +12,7 @@
 namespace regrasp {
 
 /// A plain file name with one of the suffixes (any, when the list is empty): throws RpcException
-/// otherwise (rule 9). `example` is what the hint shows.
+/// otherwise (docs/protocol.md: Files). `example` is what the hint shows.
 std::string CheckedFileName(const std::string& name, std::string_view param,
                             const std::vector<std::string_view>& suffixes,
                             std::string_view example);

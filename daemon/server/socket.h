@@ -1,6 +1,6 @@
 #pragma once
 
-/// The listening socket in the file system (rule 10).
+/// The listening socket in the file system (docs/protocol.md: Access).
 
 #include <stdexcept>
 #include <string>

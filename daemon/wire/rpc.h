@@ -18,7 +18,7 @@ namespace regrasp {
 /// Of one line of answers; what would make it longer is answered with an error.
 inline constexpr std::size_t kMaxAnswerBytes = 16 * 1024 * 1024;
 
-/// An error as it goes over the wire (rule 7).
+/// An error as it goes over the wire (docs/protocol.md: Errors).
 struct RpcError {
   ErrorCode code = ErrorCode::kInternal;
   std::string message;                ///< cause, with the offending value

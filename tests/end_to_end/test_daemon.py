@@ -191,7 +191,7 @@ class Session(DaemonCase):
         record = self.json("move", "--by", "0,0,3", "--turn", "0,0,-10", "--wait")
         self.assertEqual((record["method"], record["state"], record["reached"], record["end"]), ("move", "done", True, "reached"))
         self.assertAlmostEqual(record["offset_m"][2], 0.003)
-        # The bound for one motion is 4 mm; a tenth of a millimetre or two is usual.
+        # README's bound for one motion is 4 mm; a tenth of a millimetre or two is usual.
         self.assertAlmostEqual(record["achieved_offset_m"][2], 0.003, delta=0.002)
         text = self.expect(0, "job", "show", record["id"]).stdout
         self.assertIn("move done, reached", text)

@@ -12,7 +12,7 @@ namespace regrasp {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-// The bounds for one motion.
+// README's bounds for one motion.
 constexpr double kAngleError = 5 * kDegree, kPositionError = 0.004;
 
 Verdict Move(SessionRun* run, const Vector3d& offset, const Vector3d& rotation) {

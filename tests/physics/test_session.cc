@@ -42,11 +42,11 @@ TEST(Session, HoldIsHonest) {
   EXPECT_EQ(run.session.state(), SessionState::kHolding);
   const Vector3d missing =
       force / kTicks + run.session.world().mass_kg() * run.session.world().gravity_W();
-  // The 2 % of the weight; the object's change of speed over 1 s is well within it.
+  // 2 % of the weight; the object's change of speed over 1 s is well within it.
   EXPECT_LT(missing.norm(), 0.02 * Weight(run.session));
   EXPECT_EQ(foreign, 0);
   EXPECT_GE(fewest, 3);
-  EXPECT_LT((run.session.truth().p_WO - p0).norm(), 2e-3);  // the bound for 60 s
+  EXPECT_LT((run.session.truth().p_WO - p0).norm(), 2e-3);  // over 60 s
 }
 
 // From the tick in which the last contact ends the object falls by g alone. Nothing but that may

@@ -1,4 +1,4 @@
-// The socket in the file system (rule 10).
+// The socket in the file system (docs/protocol.md: Access).
 
 #include "daemon/server/socket.h"
 
