@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/hand/damped_inverse.h"
+#include "core/hand/segment_distance.h"
 #include "core/hand/shape_distance.h"
 
 namespace regrasp {
@@ -28,35 +29,6 @@ bool CapsuleOf(const HandModel& hand, const Estimate& estimate, int link, Capsul
     return true;
   }
   return false;
-}
-
-/// Closest points of the axes of two capsules [Ericson 2005, Sec. 5.1.9].
-struct Closest {
-  Vector3d on_one, on_two;
-};
-Closest BetweenSegments(const Capsule& one, const Capsule& two) {
-  const Vector3d d1 = one.b - one.a, d2 = two.b - two.a, r = one.a - two.a;
-  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r);
-  double s = 0, t = 0;
-  constexpr double kPoint = 1e-12;  // m²: shorter segments are points
-  if (a <= kPoint && e <= kPoint) return {one.a, two.a};
-  if (a <= kPoint) {
-    t = std::clamp(f / e, 0.0, 1.0);
-  } else {
-    const double c = d1.dot(r);
-    if (e <= kPoint) {
-      s = std::clamp(-c / a, 0.0, 1.0);
-    } else {
-      const double b = d1.dot(d2), denominator = a * e - b * b;
-      if (denominator > 1e-18) s = std::clamp((b * f - c * e) / denominator, 0.0, 1.0);
-      t = (b * s + f) / e;
-      if (t < 0 || t > 1) {
-        t = std::clamp(t, 0.0, 1.0);
-        s = std::clamp((b * t - c) / a, 0.0, 1.0);
-      }
-    }
-  }
-  return {one.a + s * d1, two.a + t * d2};
 }
 
 /// `direction`: of contact motion, any length; `depth` [m] along it. None where the direction is
@@ -168,7 +140,7 @@ std::optional<Wall> WallTo(const Explorer& e, int own_link, const Vector3d& on_W
 /// Between a link of this finger and another finger's.
 void AddLinks(const Explorer& e, int own_link, const Capsule& own, const Capsule& other,
               Walls* walls) {
-  const Closest closest = BetweenSegments(own, other);
+  const SegmentPoints closest = ClosestOfSegments(own.a, own.b, other.a, other.b);
   const Vector3d between = closest.on_two - closest.on_one;
   AddWall(WallTo(e, own_link, closest.on_one, between,
                  own.radius + other.radius + e.parameters.clearance - between.norm()),

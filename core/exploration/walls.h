@@ -12,7 +12,8 @@ enum class OnSide : std::uint8_t {
 };
 
 /// What a sliding finger must not run into: its joint limits, from `limit_margin` on, the other
-/// fingers, from `clearance` on (last two links of each), the object, which the rest of its last
+/// fingers, from `clearance` on (of the last two links of each the first capsule: boxes and further
+/// capsules are not seen), the object, which the rest of its last
 /// link keeps `clearance` from, and the end of its own round tip. A wall's direction is the contact
 /// motion that changes its quantity most: for a joint its row of J⁺, for two links the gradient of
 /// their distance through J⁺.

@@ -180,8 +180,9 @@ double MotionReserve(const HandModel& hand, int finger, const FingerPosture& fro
 
 double Gap(const Bone& one, const Bone& two) {
   if (one.radius <= 0 || two.radius <= 0) return 1.0;
-  // Closest points of two segments by alternating projection, exact for most pairs after a few
-  // rounds [Ericson 2005, Sec. 5.1.9 without the special cases].
+  // Closest points of the two lines, held to one segment, then each end to the other: one pass
+  // finds the segments' own [Ericson 2005, Sec. 5.1.9; points and parallels have no branch of their
+  // own].
   const Vector3d d1 = one.b_W - one.a_W, d2 = two.b_W - two.a_W, r = one.a_W - two.a_W;
   const double a = std::max(1e-12, d1.squaredNorm()), e = std::max(1e-12, d2.squaredNorm());
   const double b = d1.dot(d2), c = d1.dot(r), f = d2.dot(r), denominator = a * e - b * b;

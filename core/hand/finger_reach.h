@@ -56,7 +56,8 @@ double MotionReserve(const HandModel& hand, int finger, const FingerPosture& fro
                      const Vector3d& p_WO, const Vector3d& axis_W, double margin, double most,
                      const ReachRule& rule);
 
-/// Distance between the surfaces of two links; negative where they overlap [m].
+/// Distance between the surfaces of two links; negative where they overlap; 1 m where one of them
+/// has no shape (radius 0) [m].
 double Gap(const Bone& one, const Bone& two);
 
 }  // namespace regrasp
