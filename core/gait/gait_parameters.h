@@ -173,7 +173,7 @@ struct GaitParameters {
   double landing_known = 0.35;         ///< farther from what was felt is unknown [rad]
   double landing_unknown_cost = 1.0;   ///< in score per rad from what was felt
   double landing_unknown_share = 0.3;  ///< of that angle: so far its normal may be off
-  double landing_penalty = 2.0;        ///< in score, for what a landing must not do
+  double landing_penalty = 2.0;        ///< in score; where it is used: landing_plan.h
   double link_clearance = 0.002;       ///< of the link before the tip from the object [m]
   double link_touches = 0.004;         ///< so much less costs landing_penalty [m]
   // ... and a stance (stance_plan.h, stance_search.h).

@@ -18,6 +18,15 @@ namespace {
 constexpr int kReachSteps = 8;
 constexpr double kNearObject = 1.8;  // of the mean radius: a link farther out is clear of it
 
+// Of the score J (landing_plan.h).
+constexpr double kMarginsWeight = 0.5;  // of the mean and of the least of the load margins' shares
+constexpr double kRoomWeight = 3;       // of the load margin without the finger that gets room
+constexpr double kMostUnknown = 0.5;  // angle to what was felt that tilts the normal, at most [rad]
+constexpr double kMissingPenalty = 0.01;  // so far from its target a tip costs a penalty more [m]
+constexpr double kNearPenalty = 0.002;    // a gap so much smaller than wanted costs a penalty [m]
+constexpr double kMostNear = 5.0;         // penalties for what is too near another finger
+constexpr double kMostTouching = 1.5;     // penalties for what touches the object beside the tip
+
 double Square(double x) { return x * x; }
 
 /// Candidate `index` as an offset from home in its tangent plane, in units of the reach.
@@ -83,7 +92,7 @@ double LinkPenalty(const ControlTick& tick, int finger, const FingerPosture& the
                     GapBeside(tick, finger, turned, landing, turn)});
   }
   return tick.gait.landing_penalty *
-         std::min(1.5, (tick.gait.link_clearance - gap) / tick.gait.link_touches);
+         std::min(kMostTouching, (tick.gait.link_clearance - gap) / tick.gait.link_touches);
 }
 
 /// The coming turn, as far as the finger follows [rad, rotation vector in W].
@@ -135,7 +144,7 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   landing.p_OF = surface.p_O + hand.fingers[finger].tip_radius * surface.normal_O;
   landing.unknown = surface.unknown;
   const double tilt = tick.gait.doubt * surface.bend +
-                      tick.gait.landing_unknown_share * std::min(0.5, surface.unknown);
+                      tick.gait.landing_unknown_share * std::min(kMostUnknown, surface.unknown);
   candidate.friction = FrictionUnderTilt(tick.control.friction_estimate, tilt);
 
   const Vector3d p_WF = estimate.p_WO + estimate.q_WO * landing.p_OF;
@@ -146,7 +155,7 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   landing.score = CheapScore(tick, there, &landing) -
                   tick.gait.landing_far_cost * offset.squaredNorm() / Square(tick.gait.landing_far);
   if (missing > tick.gait.landing_missing)
-    landing.score -= tick.gait.landing_penalty * (1 + missing / 0.01);
+    landing.score -= tick.gait.landing_penalty * (1 + missing / kMissingPenalty);
   const bool listed =
       !shortlist_.full() || landing.score > shortlist_[shortlist_.size() - 1].landing.score;
   if (listed)
@@ -172,7 +181,7 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
     const FingerPosture other = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
     gap = std::min(gap, GapOfFingers(there, other));
   }
-  if (gap < clearance) score -= penalty * std::min(5.0, (clearance - gap) / 0.002);
+  if (gap < clearance) score -= penalty * std::min(kMostNear, (clearance - gap) / kNearPenalty);
   landing->blocked = gap < -tick.gait.landing_overlap;
   if (!request_.axis_W.isZero()) {
     landing->reserve =
@@ -263,9 +272,9 @@ bool LandingPlan::Step(const ControlTick& tick) {
     if (!Examine(tick)) return false;
     Landing landing = shortlist_[examined_].landing;
     if (request_.room_for >= 0) {
-      landing.score += 3 * landing.margin / std::max(1e-3, tick.gait.margin_wanted);
+      landing.score += kRoomWeight * landing.margin / std::max(1e-3, tick.gait.margin_wanted);
     } else if (count_ > 0) {
-      landing.score += 0.5 * (sum_ / count_ + least_) + after_;
+      landing.score += kMarginsWeight * (sum_ / count_ + least_) + after_;
     }
     if (!best_.found || landing.score > best_.score) best_ = landing;
     if (landing.stays) stay_score_ = landing.score;

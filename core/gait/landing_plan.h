@@ -2,19 +2,25 @@
 
 /// Where a finger that leaves shall land: planned on the felt surface, a little per tick.
 ///
-/// Candidates lie in rings about the finger's home, projected onto the felt surface. Each is scored
-/// by shares of what is wanted, at most 1 each:
+/// Candidates lie in rings about the finger's home, projected onto the felt surface. With
+/// Share(x, wanted) = x / wanted, held to −1 … 1 (1 where nothing is wanted), the parameters of
+/// gait.* and the constants of landing_plan.cc each is scored by
 ///
-///   J = reserve / reserve wanted − 2 (share of the coming step that the reserve lacks)²
-///       − 0.3 (distance from home / 10 mm)²
-///       + ½ (mean + least over the other fingers k of ρ without k / ρ wanted) + ρ without the next
-///       / ρ wanted − penalties
+///   J = Share(reserve, reserve_wanted)
+///       − landing_penalty (1 − Share(reserve, min(step_rad, reserve_wanted)))²
+///       − landing_far_cost (distance from home / landing_far)²
+///       − landing_unknown_cost · angle to what was felt − landing_penalty · (penalties)
+///       + kMarginsWeight (mean + least over the other fingers k of Share(ρ without k,
+///       margin_wanted))
+///       + Share(ρ without the next finger, margin_wanted)
 ///
-/// reserve: MotionReserve of the coming turn; ρ: load margin of the grasp with the finger there,
-/// in which a contact near an edge or on unknown ground has less friction (its normal may be
-/// another). Penalties where the finger does not reach, faces the surface with its side, comes near
-/// another finger, or where the surface is not known. The cheap terms rate all candidates, load
-/// margins only the best few.
+/// reserve: SureReserve of the coming turn; without a turn its two terms are 0. ρ: load margin of
+/// the grasp with the finger there, in which a contact near an edge or on unknown ground has less
+/// friction (its normal may be another). Where room is made for a finger the last two terms are
+/// kRoomWeight · ρ without that finger / margin_wanted, of any size. Penalties where the finger
+/// does not reach, faces the surface with its side, comes near another finger, touches the object
+/// with its links, now or after the turn, or where the surface is not known. The cheap terms, all
+/// but the load margins', rate all candidates; load margins only the best few.
 
 #include "core/control/control_tick.h"
 #include "core/gait/stance.h"
@@ -59,7 +65,7 @@ class LandingPlan {
     StanceContact home;                   ///< from the object's centre, in W axes
     Vector3d axis_W = Vector3d::UnitZ();  ///< of the coming turn, sense included; zero: none
     int next = -1;                        ///< the finger that leaves after it, or -1
-    int room_for = -1;     ///< >= 0: only the load margin without this finger counts, and the way
+    int room_for = -1;     ///< >= 0: of the load margins only that without this finger counts
     double reach = 0.010;  ///< candidates lie so far about home [m]
     template <typename V>
     void Fields(V& v) {
