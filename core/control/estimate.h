@@ -17,6 +17,9 @@
 
 namespace regrasp {
 
+/// How long without contact is too long depends on what for: control.contact_lost_s (`lost`: it is
+/// left out of grasps and margins), control.reapproach_delay_s (it moves in again), gait.away_s
+/// (the gait does not count on it), exploration.lost_contact_s (a slide ends).
 struct FingerEstimate {
   bool in_contact = false;       ///< this tick's reading
   bool ever_in_contact = false;  ///< p_WC and normal_W hold something
@@ -29,7 +32,7 @@ struct FingerEstimate {
   double force = 0;                       ///< filtered normal force [N]
   FingerJacobian J;                  ///< at p_WC, or at the fingertip centre if never in contact
   Vector3d p_WF = Vector3d::Zero();  ///< fingertip centre [m]
-  double manipulability = 0;         ///< at p_WC [kManipulabilityUnit]
+  double manipulability = 0;         ///< at p_WC [kManipulabilityUnit: 1e-4 m³]
 
   /// What is not a function of the others and of the joint angles.
   template <typename V>

@@ -134,17 +134,17 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
     const Vector3d r = f.p_WC - estimate.p_WO;
     const Vector3d v_surface = motion.v_W + motion.w_W.cross(r);
     v_ref[i] = v_surface;
-    const bool lost = f.ticks_without_contact > reapproach_ticks;
+    const bool moves_in = f.ticks_without_contact > reapproach_ticks;
     switch (task.mode) {
       case FingerMode::kPosture:
         break;
       case FingerMode::kTouch:
         commanded_[i] = -task.force * f.normal_W;
-        if (lost) v_ref[i] -= parameters.reapproach_speed * f.normal_W;
+        if (moves_in) v_ref[i] -= parameters.reapproach_speed * f.normal_W;
         break;
       case FingerMode::kHold:
         holding = true;
-        if (lost) {
+        if (moves_in) {
           commanded_[i] = -parameters.reapproach_force * f.normal_W;
           v_ref[i] -= parameters.reapproach_speed * f.normal_W;
         } else {
@@ -154,7 +154,7 @@ const JointVector& HybridController::Update(const Estimate& estimate, const Fing
       case FingerMode::kSlide: {
         commanded_[i] = SlideForce(f, task, v_surface, parameters, &state);
         v_ref[i] += task.v_W;
-        if (lost) {
+        if (moves_in) {
           v_ref[i] -= parameters.reapproach_speed * f.normal_W;
         } else {
           const Vector3d on_object = SlideForceOnObject(f, task, commanded_[i], parameters);

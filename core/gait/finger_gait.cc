@@ -242,8 +242,8 @@ void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* contro
   regrasp_began_ = false;
   if (!regrasp_.aborted()) caution_[finger] *= tick.gait.caution_kept;
   if (!regrasp_.aborted() && regrasp_.request().rub_s > 0) ++rubs_;
-  misses_ = regrasp_.lost() ? misses_ + 1 : 0;
-  if (regrasp_.lost() && (!planned(tick) || misses_ >= tick.gait.misses)) {
+  misses_ = regrasp_.no_surface() ? misses_ + 1 : 0;
+  if (regrasp_.no_surface() && (!planned(tick) || misses_ >= tick.gait.misses)) {
     std::snprintf(error_, sizeof(error_), "%s found no surface to stand on",
                   tick.hand.fingers[finger].name.c_str());
     Enter(GaitPhase::kFailed);
@@ -253,7 +253,7 @@ void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* contro
     Enter(GaitPhase::kRecover);
   } else {
     ++regrasps_;
-    if (regrasp_.lost()) {
+    if (regrasp_.no_surface()) {
       waiting_.add(finger);
     } else {
       let_by_ = put_off_;  // it may have cleared their way

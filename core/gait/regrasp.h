@@ -84,7 +84,7 @@ class Regrasp {
   bool active() const { return slide_.active(); }
   bool aborted() const { return aborted_; }
   /// Found no surface to stand on.
-  bool lost() const { return slide_.no_surface(); }
+  bool no_surface() const { return slide_.no_surface(); }
   const GuidedSlide& slide() const { return slide_; }
   template <typename V>
   void Fields(V& v) {
