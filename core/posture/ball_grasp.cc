@@ -200,7 +200,7 @@ double Clearance(const HandModel& hand, const KinematicsData& data, const Vector
   return gap;
 }
 
-void Judge(const HandModel& hand, const BallTask& task, double enough, BallGrasp* c) {
+void RateGrasp(const HandModel& hand, const BallTask& task, double enough, BallGrasp* c) {
   KinematicsData data;
   ForwardKinematics(hand, c->q, &data);
   const int n = hand.num_fingers();

@@ -28,7 +28,8 @@ struct BallGrasp {
   double score = -1e9;
   double load_margin = 0;              ///< rho with every finger [N]
   std::vector<double> margin_without;  ///< rho without each finger, negative where it drops [N]
-  std::vector<double> manipulability;  ///< of each finger at its contact [m³]
+  std::vector<double> manipulability;  ///< of each finger at its contact [m³],
+                                       ///< not in kManipulabilityUnit
   double room = 0;  ///< least distance to a joint limit, in shares of half the joint's range
   double clearance =
       0;              ///< least gap of links of different fingers, of the ball to other links [m]
@@ -60,6 +61,6 @@ double Clearance(const HandModel& hand, const KinematicsData& data, const Vector
 
 /// Fills everything but `q` and `p_WO`, which must touch. Where the score cannot exceed `enough`
 /// it stops early and leaves the score at or below it.
-void Judge(const HandModel& hand, const BallTask& task, double enough, BallGrasp* grasp);
+void RateGrasp(const HandModel& hand, const BallTask& task, double enough, BallGrasp* grasp);
 
 }  // namespace regrasp

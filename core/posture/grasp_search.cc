@@ -69,7 +69,7 @@ BallGrasp ClimbGrasp(const HandModel& hand, const GraspSearch& search, const Bal
   RandomStream random(search.seed, 1);
   BallGrasp best = start;
   if (TouchBall(hand, search.task.radius, best.p_WO, &best.q))
-    Judge(hand, search.task, -1e9, &best);
+    RateGrasp(hand, search.task, -1e9, &best);
   else
     best.score = -1e9;
   for (int step = 0; step < search.steps; ++step) {
@@ -83,7 +83,7 @@ BallGrasp ClimbGrasp(const HandModel& hand, const GraspSearch& search, const Bal
           c.q[j] = std::clamp(c.q[j] + 0.2 * scale * random.Normal(), joint.lower, joint.upper);
         }
     if (!TouchBall(hand, search.task.radius, c.p_WO, &c.q)) continue;
-    Judge(hand, search.task, best.score, &c);
+    RateGrasp(hand, search.task, best.score, &c);
     if (c.score > best.score) best = c;
     if (step % 200 == 0) search.progress(static_cast<double>(step) / search.steps, best.score);
   }
@@ -107,7 +107,7 @@ std::vector<BallGrasp> FindGrasps(const HandModel& hand, const GraspSearch& sear
     BallGrasp start;
     if (!RandomStart(hand, search.task.radius, samples, &random, &start)) continue;
     const bool full = static_cast<int>(found.size()) == search.starts;
-    Judge(hand, search.task, full ? found.back().score : -1e9, &start);
+    RateGrasp(hand, search.task, full ? found.back().score : -1e9, &start);
     if (full && start.score <= found.back().score) continue;
     if (full) found.pop_back();
     found.push_back(start);

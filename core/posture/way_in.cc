@@ -112,7 +112,7 @@ WayIn FindWayIn(const HandModel& hand, const BallTask& task, const BallGrasp& gr
       other.radius += change;
       BallGrasp landed = grasp;
       way.gap = std::min(way.gap, GapOnTheWay(hand, way, grasp.p_WO, other.radius, &landed.q));
-      Judge(hand, other, -1e9, &landed);
+      RateGrasp(hand, other, -1e9, &landed);
       score += landed.score;
     }
     score += std::min(0.0, (way.gap - kClear) / 0.001);

@@ -48,7 +48,7 @@ TEST_F(PostureTest, FindsAGraspThatItsJudgementAndItsFileAgreeOn) {
   for (double margin : grasp.margin_without) EXPECT_GT(margin, 0.0);
   EXPECT_GT(grasp.facing, 0.0);
   BallGrasp again = grasp;
-  Judge(hand, search.task, -1e9, &again);
+  RateGrasp(hand, search.task, -1e9, &again);
   EXPECT_DOUBLE_EQ(again.score, grasp.score);
   EXPECT_EQ(FindGrasps(hand, search).front().score, grasp.score) << "deterministic";
 
@@ -123,7 +123,7 @@ TEST(ShippedHands, HaveAGraspThatEveryFingerMayLeave) {
     BallTask task;
     task.weight = 0.08 * model.scenario.gravity_W;
     ASSERT_TRUE(TouchBall(model.hand, task.radius, grasp.p_WO, &grasp.q));
-    Judge(model.hand, task, -1e9, &grasp);
+    RateGrasp(model.hand, task, -1e9, &grasp);
     for (double margin : grasp.margin_without) EXPECT_GT(margin, 0.5);
     EXPECT_GT(grasp.room, 0.1);
     EXPECT_GT(grasp.clearance, 0.002);
@@ -164,7 +164,7 @@ TEST_F(PostureTest, FingersOfTwoJointsPressAlongTheirNormal) {
   BallGrasp beside = found.front();
   beside.p_WO += Vector3d(0.012, 0.012, 0);
   ASSERT_TRUE(TouchBall(hand, search.task.radius, beside.p_WO, &beside.q));
-  Judge(hand, search.task, -1e9, &beside);
+  RateGrasp(hand, search.task, -1e9, &beside);
   EXPECT_LT(beside.push, found.front().push);
 }
 
