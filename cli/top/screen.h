@@ -9,7 +9,7 @@
 
 namespace regrasp::cli {
 
-/// What a cell means; top_terminal.cc gives it a colour. Nothing is said by ink alone.
+/// What a cell means; terminal.cc gives it a colour. Nothing is said by ink alone.
 enum class Ink {
   kPlain,
   kBold,

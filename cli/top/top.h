@@ -4,7 +4,7 @@
 
 namespace regrasp::cli {
 
-/// The full-screen dashboard; keys and panels: regrasp(1), top.
+/// The full-screen dashboard; its keys: cli/top/keys.h, its panels: panels.h.
 ExitCode Top(Context& context, const Invocation& invocation);
 
 }  // namespace regrasp::cli

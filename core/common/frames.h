@@ -4,7 +4,8 @@
 ///
 /// Names follow `<quantity>_<measured-in><target>[_<expressed-in>]`, so that adjacent letters
 /// cancel: `p_WQ = X_WC * p_CQ`. Quantities: p position [m], R rotation, X rigid transform, v
-/// velocity [m/s], w angular velocity [rad/s], f force [N], n unit normal.
+/// velocity [m/s], w angular velocity [rad/s], f force [N], n unit normal. q alone is joint angles
+/// [rad], q with two frames (q_WO) the rotation R as a quaternion.
 ///
 ///   W  world; equal to H (the palm never moves: tilting the palm is done by turning gravity)
 ///   H  hand: fingers point to +z, the palm's normal is -y, the thumb side is +x
@@ -12,6 +13,18 @@
 ///   L  a link: origin at its joint
 ///   F  fingertip: the finger's last link, origin at the centre of the tip's rounding sphere
 ///   C  contact: origin at the contact point, z along the OUTWARD normal of the object
+///
+/// In some folders only:
+///
+///   B  a body of the simulator, or a box: origin at its middle, axes along its edges
+///   G  a link of the URDF file that is fixed to a link of the model, or a shape of it (core/hand)
+///   I  a link's inertia as the file has it: origin at the centre of mass (core/hand)
+///   J  a joint: origin on its axis; P  the link before the joint (core/hand, core/world)
+///   R  the root of a hand's file (X_HR); in core/gait the place where a finger slides first (p_WR)
+///   S  a collision shape; M  the middle of its bounding sphere (core/world)
+///   T  the last link of a finger (X_WT); a taxel (p_LT)
+///   OLeft  where a finger left the object, in O (core/gait/hop.h)
+///   V  the viewer of a picture, where C is the camera (snapshots)
 ///
 /// Forces `f_*` at a contact are forces ON THE OBJECT unless the name says otherwise.
 /// SI units and radians inside; suffixes such as _mm and _deg appear only at the edges.

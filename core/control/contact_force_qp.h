@@ -6,6 +6,7 @@
 ///   subject   f_i in the round friction cone about the inward normal n_i (coefficient mu),
 ///   to        lower <= f_i . n_i <= cap_i
 ///
+/// Its cost is quadratic; with the round cone it is, strictly, a second-order cone program (SOCP).
 /// Solved by warm-started FISTA [Beck, Teboulle 2009] with the exact projection onto each truncated
 /// cone.
 

@@ -45,8 +45,8 @@ struct ControlParameters {
   double pinv_damping = 0.004;     ///< lambda of the damped pseudo-inverse of velocities [m]
   /// The same of the projection into the null space. At a singular value sigma of the Jacobian it
   /// lets lambda² / (sigma² + lambda²) of the posture torques press on the object: with 4 and 8 mm
-  /// a fifth, which has taken a third of the thumb's grip. 0.1 mm lets next to nothing through;
-  /// turns are not shown to be the better for it (docs/logbook.md, entry 84).
+  /// a fifth, which can take a third of the thumb's grip. 0.1 mm lets next to nothing through;
+  /// turns are not shown to be the better for it.
   double projection_damping = 0.004;
   double limit_margin = 0.10;    ///< the limit spring begins this far from a joint limit [rad]
   double limit_stiffness = 1.0;  ///< [N m/rad]

@@ -20,7 +20,8 @@ struct GaitParameters;
 class FeltSurface;
 
 /// Load margins rho of the present grasp from sensed contacts, low-passed with
-/// control.margin_filter_s [N].
+/// control.margin_filter_s [N]. One of them is computed every QualityMonitor::kMarginInterval, in
+/// turn: of n fingers each is up to n + 1 of these old, of five 30 ms, before the low pass.
 struct LoadMargins {
   double all = 0;                             ///< with all fingers of the grasp
   std::array<double, kMaxFingers> without{};  ///< without one finger, by finger

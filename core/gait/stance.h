@@ -10,7 +10,8 @@
 
 namespace regrasp {
 
-/// One contact of a stance, relative to the object's reference position, in W axes.
+/// One contact of a stance, from the object's reference position and in W axes: unlike those of a
+/// Landing (landing_plan.h), which are in O, p_OC and p_OF do not turn with the object.
 struct StanceContact {
   Vector3d p_OC = Vector3d::Zero();       ///< contact [m]
   Vector3d p_OF = Vector3d::Zero();       ///< fingertip centre [m]

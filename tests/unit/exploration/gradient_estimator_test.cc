@@ -12,9 +12,9 @@ namespace {
 
 Matrix3d RandomFrame(RandomStream* random) { return RotationFromZ(random->Normal3().normalized()); }
 
-// DESIGN's example: with T as printed (C to W) instead of its inverse, a slip of (2.0, -1.0)e-4
-// came back as (-1.4, 0.2)e-4. A change of phi of 1 makes the secant 1 / slip, component by
-// component.
+// The example of docs/paper_map.md, line 5: with T as printed (C to W) instead of its inverse, a
+// slip of (2.0, -1.0)e-4 came back as (-1.4, 0.2)e-4. A change of phi of 1 makes the secant 1 /
+// slip, component by component.
 TEST(SecantEstimator, LineFiveSeesASlipInTheContactFrame) {
   RandomStream random(1, 0);
   for (int trial = 0; trial < 1000; ++trial) {
