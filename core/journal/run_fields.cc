@@ -153,7 +153,7 @@ std::vector<Field> GaitFields() {
            [](S s) { return Json(s.frame.gait.state); }},
           {"reference_angle_rad", kNumber, "of the object's reference so far",
            [](S s) { return Json(Round(s.frame.gait.reference_angle_rad)); }},
-          {"target_angle_rad", kNumber, "the same, by its older name",
+          {"target_angle_rad", kNumber, "equal to reference_angle_rad; kept for scripts",
            [](S s) { return Json(Round(s.frame.gait.target_angle_rad)); }},
           {"achieved_angle_rad", kNumber, "",
            [](S s) { return Json(Round(s.frame.gait.achieved_angle_rad)); }},

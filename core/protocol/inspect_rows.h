@@ -162,7 +162,8 @@ inline constexpr std::array kInspectRows = {
                "speed, stepper, stepper_reason, tick_p99_s, seed, hand, object, warnings, job, "
                "gait: {active, "
                "phase, finger, state, "
-               "reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, "
+               "reference_angle_rad, target_angle_rad (equal to it, kept for scripts), "
+               "achieved_angle_rad, cycles, regrasps}, "
                "incident (the last drop: "
                "tick, cause, record, "
                "picture; or null), noise, clients, ..."},

@@ -76,7 +76,7 @@ struct GaitFrame {
   int finger = -1;      ///< the finger that regrasps, -1 during object motion
   char state[24] = {};  ///< row of the gait table: "S_T", ..., "object motion" while all hold
   double reference_angle_rad = 0;  ///< of the object's reference so far
-  double target_angle_rad = 0;     ///< the same, by its older name
+  double target_angle_rad = 0;     ///< equal to it; kept for scripts
   double achieved_angle_rad = 0;   ///< of the object, by the truth
   int cycles = 0, regrasps = 0;
 };

@@ -261,7 +261,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.landing_known", "rad", 0, 3, "Planned landings: farther from all that was felt the surface is unknown.", kOurs, [](P& p) { return &p.gait.landing_known; }),
   Row("gait.landing_unknown_cost", "1/rad", 0, 10, "Planned landings: cost in score of a place, per angle from what was felt.", kOurs, [](P& p) { return &p.gait.landing_unknown_cost; }),
   Row("gait.landing_unknown_share", "", 0, 2, "Planned landings: the normal may be off by this share of that angle, which costs load margin.", kOurs, [](P& p) { return &p.gait.landing_unknown_share; }),
-  Row("gait.landing_penalty", "", 0, 100, "Planned landings: penalty in score where the finger does not reach, faces the surface with its side or comes too near.", kOurs, [](P& p) { return &p.gait.landing_penalty; }),
+  Row("gait.landing_penalty", "", 0, 100, "Planned landings: penalty in score where the finger does not reach, faces the surface with its side or comes too near, and weight of the motion reserve that the coming step lacks (squared share).", kOurs, [](P& p) { return &p.gait.landing_penalty; }),
   Row("gait.link_clearance", "m", 0, 0.02, "Planned landings: gap wanted between the link before the tip and the object.", kOurs, [](P& p) { return &p.gait.link_clearance; }),
   Row("gait.link_touches", "m", 0.0001, 0.02, "Planned landings: a gap so much smaller than gait.link_clearance costs gait.landing_penalty.", kOurs, [](P& p) { return &p.gait.link_touches; }),
   Row("gait.stance_trials", "", 1, 100000, "Planned stances: trials of the search.", kOurs, [](P& p) { return &p.gait.stance_trials; }),

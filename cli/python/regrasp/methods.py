@@ -319,8 +319,8 @@ class Methods:
         Returns version, protocol, state, paused, clock (continuous, lockstep), advancing (time goes on now), tick,
             time_s, state_hash, real_time_factor (0 while time stands still, null where it is not known yet), speed,
             stepper, stepper_reason, tick_p99_s, seed, hand, object, warnings, job, gait: {active, phase, finger,
-            state, reference_angle_rad, target_angle_rad, achieved_angle_rad, cycles, regrasps}, incident (the last
-            drop: tick, cause, record, picture; or null), noise, clients, ....
+            state, reference_angle_rad, target_angle_rad (equal to it, kept for scripts), achieved_angle_rad,
+            cycles, regrasps}, incident (the last drop: tick, cause, record, picture; or null), noise, clients, ....
         """
         return self._ask("status", {})
 
