@@ -180,7 +180,9 @@ std::vector<Arg> WithoutObject(std::vector<Arg> args) {
   return args;
 }
 
-std::vector<Arg> ExplorationArgs(const char* estimators) {
+/// `estimators`: "" for the default of `explore`.
+std::vector<Arg> ExplorationArgs(const std::string& estimators) {
+  const ParamSpec& estimator = *FindParam(*FindMethod("explore"), "estimator");
   Arg criterion =
       TextArg("criterion", "--criterion", "NAME", "what is maximised", "manipulability");
   const auto& values = FindParam(*FindMethod("explore"), "criterion")->values;
@@ -188,7 +190,8 @@ std::vector<Arg> ExplorationArgs(const char* estimators) {
   return {TextArg("finger", "--finger", "NAMES", "fingers, separated by commas, or all", "all"),
           criterion,
           TextArg("estimator", "--estimator", "NAMES",
-                  "least_squares, secant, or both with a comma", estimators),
+                  fmt::format("{}, or several with commas", fmt::join(estimator.values, ", ")),
+                  estimators.empty() ? std::string(estimator.default_text) : estimators),
           Number("rays", "--rays", ArgKind::kInteger, "N",
                  "rays of the noise-free map that success is judged by; 0: none", 0, 360, "12")};
 }
@@ -204,7 +207,7 @@ std::vector<CommandSpec> ExperimentCommands() {
   return {
       {"experiment exploration", kGroup,
        "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
-       With(ExplorationArgs("least_squares"), "50", "paper"), Experiment},
+       With(ExplorationArgs(""), "50", "paper"), Experiment},
       {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
        With({TextArg("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
                      "0,0,-1"),
@@ -252,7 +255,7 @@ std::vector<CommandSpec> ExperimentCommands() {
        Experiment},
       {"experiment noise-sweep", kGroup,
        "explorations at every noise preset, the estimators side by side", nullptr,
-       With(ExplorationArgs("both"), "20", "off,fine,paper,coarse,taxel"), Experiment},
+       With(ExplorationArgs("all"), "20", "off,fine,paper,coarse,taxel"), Experiment},
       {"experiment paper",
        kGroup,
        "everything the paper shows, measured again: figures, trials and a page",

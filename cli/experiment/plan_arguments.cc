@@ -128,10 +128,11 @@ Plan PlanFromArguments(const std::string& experiment, const Invocation& invocati
     p.speed_deg_s = ParseNumber(invocation.Text("speed", "0"), "--speed");
   } else {
     p.subjects = NamesIn(invocation.Text("finger", kEveryFinger), "--finger", kEveryFinger);
-    const auto estimators = ValuesOf("explore", "estimator");
+    const ParamSpec& spec = *FindParam(*FindMethod("explore"), "estimator");
+    const std::vector<std::string> estimators(spec.values.begin(), spec.values.end());
     p.estimators =
         Names(invocation.Text("estimator", sweep ? fmt::format("{}", fmt::join(estimators, ","))
-                                                 : "least_squares"),
+                                                 : std::string(spec.default_text)),
               estimators, "--estimator");
     p.criterion = invocation.Text("criterion", "manipulability");
     p.rays = static_cast<int>(Integer(invocation, "rays", "12"));

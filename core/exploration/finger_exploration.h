@@ -15,7 +15,7 @@ class FingerExploration {
   struct Request {
     int finger = -1;
     Criterion criterion = Criterion::kManipulability;
-    Estimator estimator = Estimator::kLeastSquares;
+    Estimator estimator = kDefaultEstimator;
     std::uint64_t seed = 0;
     int max_cycles = 0;                       ///< 0 takes the parameter's
     Vector3d turn_axis_W = Vector3d::Zero();  ///< of the coming turn, for the motion reserve
@@ -23,7 +23,7 @@ class FingerExploration {
     void Fields(V& v) {
       v("finger", finger, v.Finger());
       v("criterion", criterion, kLastCriterion);
-      v("estimator", estimator, Estimator::kLeastSquares);
+      v("estimator", estimator, kLastEstimator);
       v("seed", seed);
       v("max_cycles", max_cycles);
       v("turn_axis_W", turn_axis_W);

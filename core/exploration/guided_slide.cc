@@ -210,11 +210,11 @@ bool GuidedSlide::MustEnd(const ControlTick& tick, const ObjectWrench& wrench) {
 void GuidedSlide::Explore(const ControlTick& tick, const SlideProfile& profile,
                           const SurfaceExploration::Input& input, FingerTask* task) {
   using Status = SurfaceExploration::Status;
-  const bool least_squares = request_.estimator == Estimator::kLeastSquares;
+  const bool keeps_best = InfoOf(request_.estimator).keeps_best;
   const double no_gain_s = tick.exploration.no_gain_s;
   if (ticks_ * tick.dt > profile.explore_s) {
     end_ = End::kTime;
-  } else if (least_squares && no_gain_s > 0 && best_.no_gain_s() > no_gain_s) {
+  } else if (keeps_best && no_gain_s > 0 && best_.no_gain_s() > no_gain_s) {
     end_ = End::kNoGain;
   } else {
     const Status status = algorithm_.Update(input, tick.exploration, tick.dt);
@@ -228,8 +228,8 @@ void GuidedSlide::Explore(const ControlTick& tick, const SlideProfile& profile,
     }
     end_ = status == Status::kConverged ? End::kGradient : End::kMaxCycles;
   }
-  const bool back = least_squares && (best_.worth_returning(tick.exploration.worth_returning) ||
-                                      TryAgain(profile, tick.exploration));
+  const bool back = keeps_best && (best_.worth_returning(tick.exploration.worth_returning) ||
+                                   TryAgain(profile, tick.exploration));
   if (back || excess_ >= tick.exploration.disc_slack) {
     Enter(Phase::kReturn);
   } else {

@@ -55,8 +55,8 @@ class GuidedSlide {
     kSettle,   ///< presses with the exploring force until the filters follow
     kRecall,   ///< slides to SlideGuide::recall_W
     kExplore,  ///< Algorithm 1
-    kReturn,   ///< back to the best contact it met, if the last one is worse (with the printed
-               ///< rule only from outside the disc)
+    kReturn,   ///< back to the best contact it met, if the last one is worse (without
+               ///< InfoOf(estimator).keeps_best only from outside the disc)
     kReload,   ///< its force ramps up
     kDone,
   };
@@ -65,7 +65,7 @@ class GuidedSlide {
     kNone,
     kGradient,
     kMaxCycles,
-    kNoGain,  ///< for exploration.no_gain_s; least squares only
+    kNoGain,  ///< for exploration.no_gain_s; where InfoOf(estimator).keeps_best
     kTime,    ///< SlideProfile::explore_s
     kContactLost,
     kObjectMoved,  ///< the others could not carry what the finger dragged
@@ -73,7 +73,7 @@ class GuidedSlide {
   struct Request {
     int finger = -1;
     Criterion criterion = Criterion::kManipulability;
-    Estimator estimator = Estimator::kLeastSquares;
+    Estimator estimator = kDefaultEstimator;
     std::uint64_t seed = 0;
     int max_cycles = 0;  ///< N_max; 0 takes the parameter's
     int without = -1;    ///< the stability that counts is that without this finger; -1: with all
@@ -84,7 +84,7 @@ class GuidedSlide {
     void Fields(V& v) {
       v("finger", finger, v.Finger());
       v("criterion", criterion, kLastCriterion);
-      v("estimator", estimator, Estimator::kLeastSquares);
+      v("estimator", estimator, kLastEstimator);
       v("seed", seed);
       v("max_cycles", max_cycles);
       v("without", without, v.Finger());

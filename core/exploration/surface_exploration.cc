@@ -63,6 +63,29 @@ bool SurfaceExploration::LeaveBlind(const Input& input, const ExplorationParamet
   return true;
 }
 
+void SurfaceExploration::Add(const Input& input, const ExplorationParameters& parameters) {
+  switch (estimator_) {
+    case Estimator::kSecant:
+      return;  // two points are enough: the last update's, and the present one
+    case Estimator::kLeastSquares: {
+      const int n = std::max(1, parameters.update_cycles);
+      return least_squares_.Add(input.p_WC, input.phi, std::pow(parameters.forgetting, 1.0 / n));
+    }
+  }
+}
+
+Vector3d SurfaceExploration::GradientOf(const Input& input, const Matrix3d& R_WC,
+                                        const ExplorationParameters& parameters) const {
+  switch (estimator_) {
+    case Estimator::kSecant:
+      return SecantEstimator::Gradient(p_WC_prev_, phi_prev_, input.p_WC, input.phi, R_WC,
+                                       parameters.min_displacement);
+    case Estimator::kLeastSquares:
+      return least_squares_.Gradient(R_WC, kRidge);
+  }
+  return Vector3d::Zero();
+}
+
 SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
                                                       const ExplorationParameters& parameters,
                                                       double dt) {
@@ -72,17 +95,13 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
     return blind_cycles_ * dt < parameters.onto_tip_s ? Status::kRunning : Status::kBlind;
   const Matrix3d R_WC = RotationFromZ(input.normal_W);
   const int n = std::max(1, parameters.update_cycles);
-  const bool least_squares = estimator_ == Estimator::kLeastSquares;
-  if (least_squares)
-    least_squares_.Add(input.p_WC, input.phi, std::pow(parameters.forgetting, 1.0 / n));
+  const bool dithers = InfoOf(estimator_).dithers;
+  Add(input, parameters);
 
   const double moved = TangentPart(input.p_WC - p_WC_prev_, input.normal_W).norm();
   if (cycle_ % n == 0 && moved >= parameters.min_displacement) {  // line 4
-    Vector3d gradient_C =
-        least_squares ? least_squares_.Gradient(R_WC, kRidge)
-                      : SecantEstimator::Gradient(p_WC_prev_, phi_prev_, input.p_WC, input.phi,
-                                                  R_WC, parameters.min_displacement);
-    gradient_C = LimitNorm(gradient_C, parameters.gradient_max);  // line 7
+    const Vector3d gradient_C =
+        LimitNorm(GradientOf(input, R_WC, parameters), parameters.gradient_max);  // line 7
     gradient_W_ = parameters.lambda * gradient_W_ +
                   (1.0 - parameters.lambda) * (R_WC * gradient_C);  // line 8
     p_WC_prev_ = input.p_WC;                                        // line 9
@@ -99,9 +118,8 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
   if (norm > 1e-9) {  // line 11
     // The dither keeps the finger moving anyway: what is left of a gradient that counts as
     // converged is mostly noise, and is followed the less the smaller it is.
-    const double least = least_squares
-                             ? parameters.speed_min * std::min(1.0, norm / parameters.epsilon)
-                             : parameters.speed_min;
+    const double least = dithers ? parameters.speed_min * std::min(1.0, norm / parameters.epsilon)
+                                 : parameters.speed_min;
     const double speed = std::min(std::max(parameters.eta * norm, least), parameters.speed_max);
     velocity_W_ = tangent * (speed / norm);
   }
@@ -109,7 +127,7 @@ SurfaceExploration::Status SurfaceExploration::Update(const Input& input,
     velocity_W_ -=
         std::clamp(parameters.wall_return * Depth(wall), 0.0, 0.5 * parameters.speed_min) *
         wall.direction_W;
-  if (least_squares) {
+  if (dithers) {
     const double phase = 2.0 * std::numbers::pi * parameters.dither_hz * cycle_ * dt;
     velocity_W_ +=
         parameters.dither_speed * (std::cos(phase) * R_WC.col(0) + std::sin(phase) * R_WC.col(1));

@@ -99,7 +99,7 @@ class SurfaceExploration {
   int cycle() const { return cycle_; }
   template <typename V>
   void Fields(V& v) {
-    v("estimator", estimator_, Estimator::kLeastSquares);
+    v("estimator", estimator_, kLastEstimator);
     v("random", random_);
     v("least_squares", least_squares_);
     v("cycle", cycle_);
@@ -120,13 +120,17 @@ class SurfaceExploration {
   /// The part of a gradient or velocity along which the finger may move.
   Vector3d Free(const Vector3d& vector_W, const Input& input,
                 const ExplorationParameters& parameters) const;
+  /// What the estimator keeps of this tick, and lines 5 and 6: its gradient in C [1/m].
+  void Add(const Input& input, const ExplorationParameters& parameters);
+  Vector3d GradientOf(const Input& input, const Matrix3d& R_WC,
+                      const ExplorationParameters& parameters) const;
   /// Moves out from behind a blind wall; false where there is none.
   bool LeaveBlind(const Input& input, const ExplorationParameters& parameters);
   /// How far the finger is beyond a wall, or beyond where it started if that was beyond the wall
   /// too; below 0 the wall is not reached [m].
   double Depth(const Wall& wall) const;
 
-  Estimator estimator_ = Estimator::kLeastSquares;
+  Estimator estimator_ = kDefaultEstimator;
   RandomStream random_;
   LeastSquaresEstimator least_squares_;
   int cycle_ = 0;

@@ -104,7 +104,7 @@ struct GaitParameters {
   double explore_s = 0.3;  ///< longest exploration per regrasp [s]
   double explore_settle_s = 0.08;  ///< rest before it, until the filters follow
   double return_limit_s = 0.6;     ///< longest way to its last end, and to the best contact
-  Estimator estimator = Estimator::kLeastSquares;  ///< of its gradient
+  Estimator estimator = kDefaultEstimator;  ///< of its gradient
   // Choosing, giving up, recovering; each row's meaning in full: core/session/parameters.cc.
   double recover_limit_s = 2.0;  ///< a broken-off regrasp is followed by at most so long a hold [s]
   double recovered = 0.5;        ///< ... which ends below this share of the abort limits

@@ -241,8 +241,7 @@ void CheckEntry(const JournalEntry& entry, const SessionConfig& config) {
   const Command& c = entry.command;
   CheckRange("job", static_cast<double>(c.job), 0, 9007199254740992.0);
   CheckRange("criterion", static_cast<double>(c.criterion), 0, static_cast<double>(kLastCriterion));
-  CheckRange("estimator", static_cast<double>(c.estimator), 0,
-             static_cast<double>(Estimator::kLeastSquares));
+  CheckRange("estimator", static_cast<double>(c.estimator), 0, static_cast<double>(kLastEstimator));
   if (c.type == CommandType::kExplore)
     CheckRange("finger", c.finger, 0, config.model.hand.num_fingers() - 1);
   CheckRange("max_cycles", c.max_cycles, 0, 1e6);

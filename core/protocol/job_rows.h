@@ -14,10 +14,6 @@ namespace regrasp::rows {
 
 using enum ParamType;
 
-// The default first.
-inline constexpr std::array kEstimators = {
-    kEstimatorNames[static_cast<std::size_t>(Estimator::kLeastSquares)],
-    kEstimatorNames[static_cast<std::size_t>(Estimator::kSecant)]};
 inline constexpr std::array kExplore = {
     ParamSpec{.name = "finger",
               .type = kEnum,
@@ -32,8 +28,8 @@ inline constexpr std::array kExplore = {
     ParamSpec{.name = "estimator",
               .type = kEnum,
               .sentence = "how it estimates the gradient; secant is the rule as printed",
-              .values = kEstimators,
-              .default_text = "least_squares"},
+              .values = kOfferedEstimators,
+              .default_text = Name(kDefaultEstimator)},
     ParamSpec{.name = "seed",
               .type = kInteger,
               .sentence = "seed of the random start direction",

@@ -19,7 +19,7 @@ struct Command {
                          ///< new id of the running job, 0 = keep
   int finger = -1;       ///< explore
   Criterion criterion = Criterion::kManipulability;
-  Estimator estimator = Estimator::kLeastSquares;
+  Estimator estimator = kDefaultEstimator;
   std::uint64_t seed = 0;                  ///< explore: direction of the start gradient; branch
   bool reseed = false;                     ///< branch: the sensors' noise goes on from `seed`
   int max_cycles = 0;                      ///< explore: 0 = parameter exploration.max_cycles

@@ -45,7 +45,7 @@ std::string_view Name(MoveEnd end);           ///< "reached", "joint_limit", ...
 struct ExploreResult {
   int finger = -1;
   Criterion criterion = Criterion::kManipulability;
-  Estimator estimator = Estimator::kLeastSquares;
+  Estimator estimator = kDefaultEstimator;
   bool converged = false;
   ExploreReason reason = ExploreReason::kNone;
   int cycles = 0;                         ///< i of Algorithm 1
@@ -58,7 +58,7 @@ struct ExploreResult {
   void Fields(V& v) {
     v("finger", finger, v.Finger());
     v("criterion", criterion, kLastCriterion);
-    v("estimator", estimator, Estimator::kLeastSquares);
+    v("estimator", estimator, kLastEstimator);
     v("converged", converged);
     v("reason", reason, ExploreReason::kFell);
     v("cycles", cycles);

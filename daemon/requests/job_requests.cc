@@ -32,8 +32,8 @@ void ReadExplore(const Service& service, const Params& params, Command* command)
   command->finger = service.hand().FindFinger(params.String("finger"));
   command->criterion =
       EnumNamed<Criterion>(params.String("criterion", "manipulability"), kCriterionNames);
-  command->estimator =
-      EnumNamed<Estimator>(params.String("estimator", "least_squares"), kEstimatorNames);
+  command->estimator = EnumNamed<Estimator>(
+      params.String("estimator", std::string(Name(kDefaultEstimator))), kEstimatorNames);
   command->seed = static_cast<std::uint64_t>(
       params.Integer("seed", static_cast<std::int64_t>(service.accepted().seed)));
   command->max_cycles = static_cast<int>(params.Integer("max_cycles", 0));

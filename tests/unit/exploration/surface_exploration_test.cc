@@ -81,11 +81,12 @@ TEST(SurfaceExploration, PrintedRuleClimbsMoreOftenThanNot) {
 
 TEST(SurfaceExploration, VelocityIsTangentialAndWithinItsLimits) {
   const ExplorationParameters parameters;
-  for (const Estimator estimator : {Estimator::kSecant, Estimator::kLeastSquares}) {
+  for (const EstimatorInfo& row : kEstimatorTable) {
+    const Estimator estimator = row.id;
     RandomStream random(1, 0);
     Follower finger{StartAt(4e-3, &random), 0.01, 1e-4};
     SurfaceExploration algorithm;
-    const double dither = estimator == Estimator::kLeastSquares ? parameters.dither_speed : 0;
+    const double dither = row.dithers ? parameters.dither_speed : 0;
     Explore(&algorithm, &finger, estimator, 3, 4000, parameters, {}, [&] {
       const double speed = algorithm.velocity_W().norm();
       ASSERT_LE(speed, parameters.speed_max + dither + 1e-12);
@@ -102,7 +103,8 @@ TEST(SurfaceExploration, VelocityIsTangentialAndWithinItsLimits) {
 TEST(SurfaceExploration, GradientIsCapped) {
   ExplorationParameters parameters;
   parameters.epsilon = 0;  // never converges
-  for (const Estimator estimator : {Estimator::kSecant, Estimator::kLeastSquares}) {
+  for (const EstimatorInfo& row : kEstimatorTable) {
+    const Estimator estimator = row.id;
     RandomStream random(2, 0);
     Follower finger{StartAt(4e-3, &random)};
     SurfaceExploration algorithm;
@@ -123,7 +125,8 @@ TEST(SurfaceExploration, GradientIsCapped) {
 TEST(SurfaceExploration, StopsAfterMaxCycles) {
   ExplorationParameters parameters;
   parameters.epsilon = 0;
-  for (const Estimator estimator : {Estimator::kSecant, Estimator::kLeastSquares}) {
+  for (const EstimatorInfo& row : kEstimatorTable) {
+    const Estimator estimator = row.id;
     RandomStream random(3, 0);
     Follower finger{StartAt(4e-3, &random)};
     SurfaceExploration algorithm;
@@ -143,7 +146,8 @@ TEST(SurfaceExploration, StopsAfterMaxCycles) {
 TEST(SurfaceExploration, StaysWithinItsExcursion) {
   ExplorationParameters parameters;
   parameters.max_excursion = 2e-3;
-  for (const Estimator estimator : {Estimator::kSecant, Estimator::kLeastSquares}) {
+  for (const EstimatorInfo& row : kEstimatorTable) {
+    const Estimator estimator = row.id;
     RandomStream random(4, 0);
     const Vector3d start = StartAt(6e-3, &random);
     Follower finger{start};
@@ -168,7 +172,8 @@ std::vector<Vector3d> Path(std::uint64_t seed, Estimator estimator) {
 }
 
 TEST(SurfaceExploration, SameSeedSamePathOtherSeedOtherStart) {
-  for (const Estimator estimator : {Estimator::kSecant, Estimator::kLeastSquares}) {
+  for (const EstimatorInfo& row : kEstimatorTable) {
+    const Estimator estimator = row.id;
     const auto one = Path(1, estimator), again = Path(1, estimator), other = Path(2, estimator);
     ASSERT_EQ(one.size(), again.size());
     for (std::size_t k = 0; k < one.size(); ++k) ASSERT_EQ(one[k], again[k]);
