@@ -54,7 +54,8 @@ BandLook LookOfGaitState(const HandModel& hand, int value) {
 /// kNoValue while it maximises something else.
 double StabilityObjective(const Frame& frame) {
   const ExplorationFrame& e = frame.exploration;
-  return e.active && (e.criterion == Criterion::kStability || e.on_stability) ? e.phi : kNoValue;
+  const PhiOf phi_of = InfoOf(ActiveOf(e.criterion, e.on_stability)).phi_of;
+  return e.active && phi_of == PhiOf::kStability ? e.phi : kNoValue;
 }
 
 bool AnyValue(std::span<const double> values) {

@@ -23,19 +23,34 @@ int ActiveObjective(const Frame& frame) {
 }
 
 std::string CriterionText(Criterion criterion, bool on_stability) {
-  std::string text(Name(criterion));
-  if (criterion == Criterion::kSwitched) text += on_stability ? ": stability" : ": manipulability";
-  return text;
+  const Criterion active = ActiveOf(criterion, on_stability);
+  return fmt::format("{}{}{}", Name(criterion), active == criterion ? "" : ": ",
+                     active == criterion ? "" : Name(active));
+}
+
+/// How pale a band of this criterion is.
+double PaleOf(PhiOf phi_of) {
+  switch (phi_of) {
+    case PhiOf::kStability:
+      return 0.25;
+    case PhiOf::kEither:
+    case PhiOf::kManipulability:
+      return 0.6;
+    case PhiOf::kBoth:
+      return 0.42;
+    case PhiOf::kOther:
+      return 0.78;
+  }
+  return 0;
 }
 
 BandLook LookOfObjective(const HandModel& hand, int value) {
   const int finger = value % kOnStability;
   const bool on_stability = value % 1000 >= kOnStability;
   const auto criterion = static_cast<Criterion>(value / 1000);
-  const bool stability = on_stability || criterion == Criterion::kStability;
-  const Colour colour = LookOfFinger(finger).colour;
+  const PhiOf phi_of = InfoOf(ActiveOf(criterion, on_stability)).phi_of;
   return {FingerName(hand, finger) + ", " + CriterionText(criterion, on_stability),
-          stability ? Tint(colour, 0.25) : Tint(colour, 0.6), FingerName(hand, finger)};
+          Tint(LookOfFinger(finger).colour, PaleOf(phi_of)), FingerName(hand, finger)};
 }
 
 /// "  1.21 → 1.87": noise-free manipulability over the finger's last exploration, and whether it

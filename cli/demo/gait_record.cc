@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "cli/print/print.h"
+#include "core/exploration/criterion.h"
 #include "snapshots/sphere_fit.h"
 
 namespace regrasp::cli {
@@ -22,9 +23,11 @@ void GaitRecord::Look(SteppedDaemon* daemon) {
     ++stability_samples_;
   }
   if (const Json& exploration = quality.at("exploration"); exploration.is_object()) {
-    const std::string criterion = Plain(exploration.at("criterion"));
-    const bool stability = criterion == "stability";
-    ++objective_[Plain(exploration.at("finger"))][stability ? "stability" : "manipulability"];
+    std::string objective = Plain(exploration.at("criterion"));
+    const CriterionInfo* const row = FindCriterion(objective);
+    if (row) objective = Name(ActiveOf(row->id, false));
+    const bool stability = row && row->phi_of == PhiOf::kStability;
+    ++objective_[Plain(exploration.at("finger"))][objective];
     const Json& phi = exploration.at("phi");  // null: not known yet
     if (stability && phi.is_number() && phi.get<double>() > 0) {
       without_next_sum_ += phi.get<double>();

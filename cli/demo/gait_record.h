@@ -16,9 +16,10 @@ class GaitRecord {
   /// Takes one sample. Call it every 50 ms or so.
   void Look(SteppedDaemon* daemon);
 
-  /// {"objective": {FINGER: {"manipulability": samples, "stability": samples}}, "stability_mean":
-  /// of the grasp, "stability_without_next_mean": what S_F maximises, while it does, null without
-  /// such samples; "contact_points": n, "sphere": {"radius_m", "rms_error_m"} or null}
+  /// {"objective": {FINGER: {CRITERION: samples}}, where `switched` is what it is while the grasp
+  /// is stable enough: manipulability; "stability_mean": of the grasp,
+  /// "stability_without_next_mean": what S_F maximises, while it does, null without such samples;
+  /// "contact_points": n, "sphere": {"radius_m", "rms_error_m"} or null}
   Json ToJson() const;
 
  private:

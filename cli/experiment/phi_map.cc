@@ -9,6 +9,7 @@
 #include "cli/client/errors.h"
 #include "cli/experiment/straight_slide.h"
 #include "cli/print/print.h"
+#include "core/exploration/criterion.h"
 
 namespace regrasp::cli {
 namespace {
@@ -48,9 +49,9 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
     if (exploration.at("cycle").get<int>() > cycles) return;
     const Json truth = daemon->Call("truth");
     const Json& point = truth.at("fingers").at(finger).at("p_WC_m");
-    const Json& phi = criterion == "manipulability"
-                          ? truth.at("fingers").at(finger).at("manipulability")
-                          : exploration.at("phi");
+    const std::string truth_name = TruthNameOf(criterion);
+    const Json& phi =
+        truth_name.empty() ? exploration.at("phi") : truth.at("fingers").at(finger).at(truth_name);
     if (point.is_null() || !phi.is_number()) continue;
     if (!slid) {
       slid = true;
@@ -70,6 +71,11 @@ void Ray(SteppedDaemon* daemon, const std::string& finger, const std::string& cr
 }
 
 }  // namespace
+
+std::string TruthNameOf(const std::string& criterion) {
+  const CriterionInfo* const row = FindCriterion(criterion);
+  return row ? std::string(row->truth) : "";
+}
 
 PhiMap MapPhi(SteppedDaemon* daemon, const std::string& noise, std::int64_t seed,
               const std::string& finger, const std::string& criterion, int rays) {

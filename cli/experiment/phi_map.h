@@ -13,6 +13,9 @@ struct PhiMap {
   Json samples;           ///< [{ray, p_WC_m[3], phi}], every 50 ticks
 };
 
+/// The name of what a criterion maximises in what `truth` tells of a finger; "" where it does not.
+std::string TruthNameOf(const std::string& criterion);
+
 /// Slides `finger` from the state in which it holds the object along `rays` rays, spread evenly
 /// over all tangent directions, with sensor noise off, and records the noise-free objective on the
 /// way.

@@ -99,8 +99,8 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
               {"estimator", estimator}});
   row.update(Begun(unit, status, grasp));
   Json record, moved, near_best_s;
-  // The truth tells manipulability only.
-  const bool timed = map && map->rays > 0 && plan.CriterionOf(unit.which) == "manipulability";
+  const std::string truth_name = TruthNameOf(plan.CriterionOf(unit.which));
+  const bool timed = map && map->rays > 0 && !truth_name.empty();
   if (Done(grasp)) {
     const Json before = ObjectPlace(daemon);
     NearBest near;
@@ -112,7 +112,7 @@ Json Explore(SteppedDaemon* daemon, const Plan& plan, const Unit& unit,
                          timed ? kPhiLook : kExploreLimit, kExploreLimit, [&] {
                            if (!timed || near.reached()) return;
                            const Json truth = daemon->Call("truth").at("fingers").at(unit.subject);
-                           const Json& phi = truth.at("manipulability");  // null: no contact
+                           const Json& phi = truth.at(truth_name);  // null: no contact
                            near.Look(phi.is_number() ? phi.get<double>() : 0.0,
                                      kSuccessShare * map->best);
                          });

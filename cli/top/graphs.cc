@@ -9,6 +9,7 @@
 #include "cli/print/braille.h"
 #include "cli/print/print.h"
 #include "cli/top/panels.h"
+#include "core/exploration/criterion.h"
 
 namespace regrasp::cli {
 namespace {
@@ -103,10 +104,20 @@ void Draw(Screen* screen, const Box& box, const Graph& graph, double now_s, doub
   }
 }
 
-/// " [active]" behind the measure that exploration maximises, or would; both when it is their sum.
-const char* ActiveMark(const DashboardModel& model, std::string_view measure) {
+/// The row of what exploration maximises, or would; null before that is known.
+const CriterionInfo* ActiveCriterion(const DashboardModel& model) {
   const Json& criterion = At(model.quality(), "criterion");
-  return criterion == measure || criterion == "combined" ? " [active]" : "";
+  return criterion.is_string() ? FindCriterion(criterion.get_ref<const std::string&>()) : nullptr;
+}
+
+/// " [active]" behind the measure that is maximised, both when it is their sum; " [NAME]" behind
+/// the finger's where it is another one.
+std::string ActiveMark(const DashboardModel& model, PhiOf measure) {
+  const CriterionInfo* const row = ActiveCriterion(model);
+  if (!row) return "";
+  if (row->phi_of == measure || row->phi_of == PhiOf::kBoth) return " [active]";
+  const bool other = row->phi_of != PhiOf::kManipulability && row->phi_of != PhiOf::kStability;
+  return other && measure == PhiOf::kManipulability ? fmt::format(" [{}]", row->name) : "";
 }
 
 Graph ManipulabilityGraph(const DashboardModel& model, const std::string& chosen) {
@@ -118,7 +129,7 @@ Graph ManipulabilityGraph(const DashboardModel& model, const std::string& chosen
       graph.curves.push_back(
           {&model.manipulability(names[i]), CurveInk(static_cast<int>(i)), FingerLetter(names[i])});
   graph.title = fmt::format("Manipulability φ{}{}", finger.empty() ? "" : " " + finger,
-                            ActiveMark(model, "manipulability"));
+                            ActiveMark(model, PhiOf::kManipulability));
   return graph;
 }
 
@@ -130,7 +141,7 @@ Graph StabilityGraph(const DashboardModel& model) {
     const bool low = now.get<double>() < *graph.threshold;
     graph.title += fmt::format(" {} {} {}", Fixed(now, 2), low ? "<" : ">", Fixed(threshold, 2));
   }
-  graph.title += ActiveMark(model, "stability");
+  graph.title += ActiveMark(model, PhiOf::kStability);
   return graph;
 }
 
@@ -140,7 +151,8 @@ void DrawGraphs(Screen* screen, const Box& box, const DashboardModel& model,
                 const std::string& finger) {
   const double now_s = model.time_s(), gap_s = Gap(model);
   if (box.columns < kTwoGraphs) {
-    const bool stability = At(model.quality(), "criterion") == "stability";
+    const CriterionInfo* const row = ActiveCriterion(model);
+    const bool stability = row && row->phi_of == PhiOf::kStability;
     return Draw(screen, box, stability ? StabilityGraph(model) : ManipulabilityGraph(model, finger),
                 now_s, gap_s);
   }

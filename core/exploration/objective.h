@@ -40,8 +40,8 @@ struct ObjectiveOf {
   Criterion criterion = Criterion::kManipulability;
   int finger = -1;
   FingerSet fingers;                        ///< the grasp, which includes `finger`
-  Vector3d turn_axis_W = Vector3d::Zero();  ///< kReserve: of the coming turn, sense included
-  double margin = 0;                        ///< kReserve: load margin rho of that grasp [N]
+  Vector3d turn_axis_W = Vector3d::Zero();  ///< of the coming turn, sense included; takes_turn_axis
+  double margin = 0;  ///< load margin rho of that grasp [N]; takes_load_margin
 };
 
 /// phi. `was_on_stability`: result of the previous call; kSwitched returns to manipulability only

@@ -60,11 +60,11 @@ Verdict CheckMeasure(const Parameters& parameters, JobMethod method, Criterion c
   const bool exploring_gait =
       method == JobMethod::kRotate && parameters.gait.mode == GaitMode::kExploring;
   if (!exploring_gait && method != JobMethod::kExplore) return {};
-  if (criterion == Criterion::kReserve && !exploring_gait &&
+  if (InfoOf(criterion).takes_turn_axis && !exploring_gait &&
       TurnAxisOf(parameters.exploration).isZero(0))
     return {Verdict::Kind::kBadState,
-            "a motion reserve is of a turn about an axis, and exploration.turn_axis is zero",
-            "regrasp param set exploration.turn_axis=0,0,-1"};
+            "what is maximised is of a turn about an axis, and exploration.turn_axis is zero",
+            "regrasp param set exploration.turn_axis 0,0,-1"};
   if (exploring_gait) criterion = Criterion::kStability;  // as one of its fingers does
   if (MayMaximise(criterion, parameters.control)) return {};
   return {Verdict::Kind::kBadState,

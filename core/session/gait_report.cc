@@ -5,11 +5,9 @@
 namespace regrasp {
 namespace {
 
-/// What the regrasp maximises now, one of its two measures where it switches between them.
+/// What the regrasp maximises now.
 Criterion Counts(const Regrasp& regrasp) {
-  const GuidedSlide& slide = regrasp.slide();
-  if (slide.request().criterion != Criterion::kSwitched) return slide.request().criterion;
-  return slide.on_stability() ? Criterion::kStability : Criterion::kManipulability;
+  return ActiveOf(regrasp.slide().request().criterion, regrasp.slide().on_stability());
 }
 
 }  // namespace
@@ -33,7 +31,7 @@ void GaitReport::Regrasped(const Regrasp& regrasp, const ActivityContext& contex
                                   "%s regrasped: %s %.4f -> %.4f",
                                   context.now.hand.fingers[last_.finger].name.c_str(),
                                   Name(criterion).data(), last_.phi_before, last_.phi_after);
-  if (regrasp.request().explore && criterion != Criterion::kStability && !last_.aborted)
+  if (regrasp.request().explore && InfoOf(criterion).phi_of != PhiOf::kStability && !last_.aborted)
     event.from = last_.phi_start;
 }
 

@@ -21,7 +21,7 @@ void Judge::Look(std::int64_t tick, const WorldState& truth, const ControlParame
 
 double Judge::Phi(ObjectiveOf of, const Parameters& parameters, bool on_stability) const {
   const ControlParameters& control = parameters.control;
-  if (of.criterion == Criterion::kReserve) {
+  if (InfoOf(of.criterion).takes_load_margin) {
     const Grasp grasp = GraspOf(estimate(), of.fingers, control.friction_estimate);
     of.margin =
         LoadMargin({grasp.data(), grasp.size()}, control.mass_estimate * parameters.gravity_W,

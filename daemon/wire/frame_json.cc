@@ -52,11 +52,8 @@ Json Tick(std::int64_t tick) { return tick < 0 ? Json() : Json(tick); }
 /// The measure that exploration maximises now, or would: the rule of `switched` (Sec. II).
 std::string_view ActiveCriterion(const Frame& frame) {
   const ExplorationFrame& exploration = frame.exploration;
-  if (exploration.active && exploration.criterion != Criterion::kSwitched)
-    return Name(exploration.criterion);
-  const bool on_stability = exploration.active ? exploration.on_stability
-                                               : frame.stability.active < frame.stability.threshold;
-  return Name(on_stability ? Criterion::kStability : Criterion::kManipulability);
+  if (exploration.active) return Name(ActiveOf(exploration.criterion, exploration.on_stability));
+  return Name(ActiveOf(Criterion::kSwitched, frame.stability.active < frame.stability.threshold));
 }
 
 /// The sensed contacts that hold the object, about its sensed centre.

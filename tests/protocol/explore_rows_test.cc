@@ -44,12 +44,12 @@ class ExploreRows : public SteppedDaemonTest {
     EXPECT_EQ(record["state"], "running") << record;
     EXPECT_EQ(record[key], name);
     EXPECT_GT(client->Result("quality")["exploration"]["cycle"], 100);  // Algorithm 1 is at work
-    client->Result("checkpoint.save", {{"name", "exploring"}, {"overwrite", true}});
+    client->Result("checkpoint.save", {{"name", key + "-" + name}});
     const std::string saved = Hash();
     Step(50);
     const std::string later = Hash();
     for (const bool reexecute : {false, true}) {
-      const Json answer = Restore("exploring", reexecute);
+      const Json answer = Restore(key + "-" + name, reexecute);
       EXPECT_EQ(answer["from"], reexecute ? "commands" : "state");
       EXPECT_EQ(Hash(), saved);
       EXPECT_EQ(client->Result("param.get", parameter)["value"], name);

@@ -1,5 +1,6 @@
 // The dashboard's model, layout, drawing and keys, without a terminal.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "cli/print/braille.h"
 #include "cli/top/keys.h"
 #include "cli/top/layout.h"
+#include "core/exploration/criterion.h"
 #include "core/protocol/methods.h"
 
 namespace regrasp::cli {
@@ -156,8 +158,28 @@ TEST(TopDrawing, TheActiveCriterionIsMarkedInWords) {
   EXPECT_FALSE(Has(Text(24, 50, model), "Manipulability φ"));
 }
 
-TEST(TopDrawing, AnEmptyModelDraws) {
-  for (int rows = 0; rows <= 30; ++rows) Text(rows, 3 * rows, DashboardModel());
+TEST(TopDrawing, EveryCriterionIsMarkedWhereItIsShown) {
+  for (const CriterionInfo& row : kCriterionTable) {
+    DashboardModel model = Model("ring");
+    Json quality = Quality(3, 0.2);
+    quality["criterion"] = row.name;
+    model.Add("quality", quality);
+    const std::string text = Text(24, 100, model);
+    const bool finger = row.phi_of == PhiOf::kManipulability || row.phi_of == PhiOf::kBoth;
+    const bool grasp = row.phi_of == PhiOf::kStability || row.phi_of == PhiOf::kBoth;
+    EXPECT_EQ(Has(text, "φ ring [active]"), finger) << row.name;
+    EXPECT_EQ(Has(text, "Stability 0.20 < 0.30 [active]"), grasp) << row.name;
+    EXPECT_TRUE(finger || grasp || Has(text, fmt::format("φ ring [{}]", row.name))) << row.name;
+  }
+}
+
+TEST(TopDrawing, AnEmptyModelDrawsItsFramesAndNoNumbers) {
+  for (int rows = 0; rows <= 30; ++rows) {
+    const std::string text = Text(rows, 3 * rows, DashboardModel());
+    EXPECT_EQ(std::ranges::count(text, '\n'), rows);
+    EXPECT_FALSE(Has(text, "nan") || Has(text, "null") || Has(text, "[active]")) << text;
+  }
+  EXPECT_TRUE(Has(Text(24, 100, DashboardModel()), "Stability"));
 }
 
 TEST(TopDrawing, ItemsOfTheHighestRankGoFirst) {
