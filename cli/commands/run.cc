@@ -127,7 +127,7 @@ void CheckSame(const Invocation& invocation, const std::vector<std::string>& wor
   if (!differences.empty())
     throw CliError(kRefused,
                    fmt::format("a daemon is already running on {}: {}", socket, differences),
-                   "regrasp down, then regrasp up again");
+                   "regrasp down, then regrasp up");
 }
 
 ExitCode Up(Context& context, const Invocation& invocation) {

@@ -29,7 +29,7 @@ Verdict CheckFingers(const HandModel& hand, const Parameters& parameters, const 
   if (command.type != CommandType::kRotate) return {};
   if (!command.continuous && std::abs(command.angle_rad) <= parameters.gait.step_rad) return {};
   constexpr const char* kHint =
-      "regrasp rotate with an angle of at most gait.step_rad (20 degrees unless it was set)";
+      "regrasp rotate --angle 20 --wait    (at most gait.step_rad, 20 degrees unless it was set)";
   if (few)
     return {Verdict::Kind::kBadState,
             "turning by more than gait.step_rad needs a hand of four fingers or more: without the "
