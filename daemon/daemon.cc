@@ -7,6 +7,7 @@
 
 #include "core/hand/scenario.h"
 #include "core/protocol/socket_path.h"
+#include "core/protocol/user_directories.h"
 #include "core/sensing/noise.h"
 #include "core/world/overlap_text.h"
 #include "core/world/stepper_choice.h"

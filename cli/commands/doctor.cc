@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "cli/client/daemon_process.h"
 #include "cli/client/private_daemon.h"
 #include "cli/client/program.h"
+#include "core/protocol/user_directories.h"
 
 namespace regrasp::cli {
 namespace {
@@ -25,6 +28,20 @@ std::string FirstLine(const Finished& finished) {
   std::string line = text.substr(0, text.find('\n'));
   if (line.starts_with("regraspd: ")) line.erase(0, 10);
   return line;
+}
+
+/// `error` as a finding. An interrupt is none: it ends the examination.
+Check Fault(const std::string& name, const CliError& error, std::string next) {
+  if (error.code == kInterrupted) throw error;
+  return {name, error.what(), std::move(next), false};
+}
+
+/// What to try after an error here, where some recommend this very command.
+std::string NextAfter(const CliError& error) {
+  if (error.hint.find("regrasp doctor") == std::string::npos) return error.hint;
+  if (error.code == kTimeout) return "ps -C regraspd -o pid,stat,args    (T: stopped; kill -CONT)";
+  if (error.code == kProtocol) return "regrasp -s OTHER_PATH up    (another program listens there)";
+  return "";
 }
 
 /// Running it also finds every shared library it needs.
@@ -47,8 +64,7 @@ Check CheckHelpers() {
         return {"helpers", FirstLine(finished),
                 "./check installs the packages it needs (packages.txt)", false};
     } catch (const CliError& error) {
-      if (error.code == kInterrupted) throw;
-      return {"helpers", error.what(), "build everything, or install the package", false};
+      return Fault("helpers", error, "build everything, or install the package");
     }
     found += (found.empty() ? "" : ", ") + std::string(name);
   }
@@ -85,27 +101,36 @@ Check CheckStepper(const std::string& daemon) {
   try {
     const Finished finished =
         RunProgram({FindHelper("regrasp-hand"), "check", hand.empty() ? "shadow" : hand, "--json"});
-    const Json told = Json::parse(finished.out, nullptr, false);
-    if (finished.code != 0 || !told.is_object())
-      return {"stepper", FirstLine(finished), "regrasp hand check " + hand, false};
+    const bool good = finished.code == 0;
+    const Json told = Json::parse(good ? finished.out : finished.err, nullptr, false);
+    if (!good || !told.is_object())
+      return {"stepper",
+              told.is_object() ? Plain(At(At(told, "error"), "message")) : FirstLine(finished),
+              "regrasp hand check " + hand, false};
     const std::string best = Plain(told["stepper"]);
     return {"stepper",
             fmt::format("{} for {}: {}{}", best, Plain(told["hand"]), Plain(told["stepper_reason"]),
                         set == "auto" || set == best ? "" : "; configured is " + set),
             ""};
   } catch (const CliError& error) {
-    return {"stepper", error.what(), error.hint, false};
+    return Fault("stepper", error, error.hint);
   }
 }
 
 Check CheckOutput(const std::string& daemon) {
-  const std::string directory = Configured(daemon, "output_dir");
-  if (directory.empty()) return {"output", "the usual place", ""};
+  std::string directory = Configured(daemon, "output_dir");
+  if (directory.empty()) directory = DefaultOutputDir();
   fs::path place = directory;
   std::error_code ignored;
   while (!fs::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
-  if (::access(place.c_str(), W_OK | X_OK) == 0) return {"output", directory, ""};
-  return {"output", "cannot write to " + place.string(), "regrasp up --output-dir DIR", false};
+  std::string cause = "it is no directory";
+  if (fs::is_directory(place, ignored)) {
+    if (::access(place.c_str(), W_OK | X_OK) == 0) return {"output", directory, ""};
+    cause = std::strerror(errno);
+  }
+  const std::string above = place == directory ? "" : "cannot make " + directory + ": ";
+  return {"output", above + "cannot write to " + place.string() + ": " + cause,
+          "regrasp up --output-dir DIR", false};
 }
 
 Check CheckSocket(const std::string& flag) {
@@ -125,8 +150,9 @@ Check CheckDaemon(Context& context) {
               "regrasp down, then regrasp up", false};
     return {"daemon", fmt::format("answers, state {}", Plain(At(status, "state"))), ""};
   } catch (const CliError& error) {
-    // Not running is a state, not a fault.
-    return {"daemon", error.what(), error.hint, error.code == kNoDaemon};
+    Check check = Fault("daemon", error, NextAfter(error));
+    check.good = error.code == kNoDaemon;  // not running is a state, not a fault
+    return check;
   }
 }
 
@@ -190,7 +216,7 @@ Check CheckPhysics() {
         {"--paused", "--speed", "max", "--seed", "1", "--noise", "paper", "--hand", "shadow"});
     return SelfTest(daemon.socket()).Run();
   } catch (const CliError& error) {
-    return {"physics", error.what(), error.hint, false};
+    return Fault("physics", error, error.hint.starts_with("regrasp doctor") ? "" : error.hint);
   }
 }
 
@@ -204,7 +230,7 @@ ExitCode Doctor(Context& context, const Invocation&) {
     checks = {CheckProgram(daemon), CheckHelpers(),      CheckFont(),   CheckConfiguration(daemon),
               CheckStepper(daemon), CheckOutput(daemon), CheckPhysics()};
   } catch (const CliError& error) {
-    checks = {{"program", error.what(), "build it, or install the package", false}};
+    checks = {Fault("program", error, "build it, or install the package")};
   }
   checks.push_back(CheckSocket(context.options().socket));
   checks.push_back(CheckDaemon(context));

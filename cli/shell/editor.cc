@@ -14,6 +14,7 @@
 
 #include "cli/print/print.h"
 #include "cli/shell/words.h"
+#include "core/protocol/user_directories.h"
 
 namespace regrasp::cli {
 
@@ -164,18 +165,10 @@ LineEditor::Result LineEditor::Read(const std::string& prompt, std::string* line
 }
 
 std::string HistoryFile() {
-  const auto variable = [](const char* name) {
-    const char* value = std::getenv(name);
-    return std::string(value != nullptr ? value : "");
-  };
-  std::string file = variable("REGRASP_HISTORY");
-  if (!file.empty()) return file;
-  std::string folder = variable("XDG_STATE_HOME");
-  if (folder.empty()) {
-    const std::string home = variable("HOME");
-    if (home.empty()) return "";
-    folder = home + "/.local/state";
-  }
+  const char* named = std::getenv("REGRASP_HISTORY");
+  if (named != nullptr && *named != '\0') return named;
+  std::string folder = StateHome();
+  if (folder.empty()) return "";
   folder += "/regrasp";
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "core/protocol/user_directories.h"
+
 namespace regrasp {
 namespace {
 
@@ -42,7 +44,7 @@ SocketPath ResolveSocketPath(const std::string& flag, const std::string& config,
     return {value, "$REGRASP_SOCKET"};
   if (!config.empty()) return {config, "config"};
 
-  const std::string runtime = Environment("XDG_RUNTIME_DIR");
+  const std::string runtime = DirectoryVariable("XDG_RUNTIME_DIR");
   const std::array<SocketPath, 3> candidates = {
       SocketPath{runtime.empty() ? "" : runtime + kTail, "$XDG_RUNTIME_DIR"},
       SocketPath{std::string("/run") + kTail, "/run"},

@@ -12,6 +12,7 @@
 #include "core/common/nearest_name.h"
 #include "core/files/toml_text.h"
 #include "core/protocol/config_path.h"
+#include "core/protocol/user_directories.h"
 #include "core/session/parameter_value.h"
 #include "daemon/wire/frame_json.h"
 
@@ -50,6 +51,11 @@ std::optional<GivenValue> Given(const toml::node& node) {
     numbers.push_back(*item.value<double>());
   }
   return numbers;
+}
+
+/// Keys whose value is a path that means the same wherever a program is started.
+bool IsPlace(std::string_view key) {
+  return key == "socket" || key == "output_dir" || key == "models_dir";
 }
 
 struct Reader {
@@ -124,7 +130,9 @@ struct Reader {
     } else {
       if (!node.is_string())
         wrong(key.kind == KeyKind::kSpeed ? "a number, or \"max\"" : "a string");
-      text = *node.value<std::string>();
+      text = HomeExpanded(*node.value<std::string>());
+      if (IsPlace(key.name) && !text.empty() && !text.starts_with('/'))
+        wrong("an absolute path, or one that begins with ~/");
     }
     SetKey(config, key, text, Place(node));
   }
@@ -257,18 +265,6 @@ std::string ConfigJson(const DaemonConfig& config) {
   const Json file = config.file.empty() ? Json() : Json(config.file);
   return Json({{"file", file}, {"keys", std::move(keys)}, {"parameters", std::move(parameters)}})
       .dump();
-}
-
-std::string DefaultOutputDir() {
-  const auto variable = [](const char* name) -> std::string {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-  };
-  if (const std::string state = variable("XDG_STATE_HOME"); !state.empty())
-    return state + "/regrasp";
-  if (const std::string home = variable("HOME"); !home.empty())
-    return home + "/.local/state/regrasp";
-  return fmt::format("/tmp/regrasp-{}/output", ::geteuid());
 }
 
 }  // namespace regrasp

@@ -35,7 +35,7 @@ class ConfigNotFound : public ConfigError {
 
 struct DaemonConfig {
   std::string socket;      ///< "": by rule, see core/protocol/socket_path.h
-  std::string output_dir;  ///< "": by rule, see DefaultOutputDir()
+  std::string output_dir;  ///< "": by rule, see core/protocol/user_directories.h
   std::uint64_t seed = 1;
   std::string hand = "shadow";       ///< a name, or a .urdf file
   std::string object;                ///< a name, or a .urdf file; "": the scenario's
@@ -111,8 +111,5 @@ std::string DefaultConfigText();
 /// What is in force and where it comes from, as one JSON object: file, keys and parameters, each
 /// {name, value, origin, description, unit, reload}.
 std::string ConfigJson(const DaemonConfig& config);
-
-/// $XDG_STATE_HOME/regrasp, else $HOME/.local/state/regrasp, else /tmp/regrasp-$UID/output.
-std::string DefaultOutputDir();
 
 }  // namespace regrasp
