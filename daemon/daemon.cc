@@ -27,10 +27,21 @@ StepperChoice StepperFor(const std::string& word, const SessionConfig& session) 
   return choice;
 }
 
+/// Names where a directory comes from that is not there.
+std::vector<std::filesystem::path> SearchPath(const DaemonConfig& config) {
+  try {
+    return ModelSearchPath(config.models_dir);
+  } catch (const ModelError& error) {
+    const auto origin = config.origins.find("models_dir");
+    if (origin == config.origins.end()) throw;
+    throw ModelError(origin->second + ": " + error.what());
+  }
+}
+
 ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   CheckConfig(config, "");
   ServiceConfig service;
-  service.search_path = ModelSearchPath(config.models_dir);
+  service.search_path = SearchPath(config);
   service.output_dir =
       std::filesystem::absolute(config.output_dir.empty() ? DefaultOutputDir() : config.output_dir);
   service.control.speed = ParseSpeed(config.speed);

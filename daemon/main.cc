@@ -78,7 +78,8 @@ int Fail(const std::string& cause, const std::string& next, ExitCode code) {
 int Print(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
     return Fail(fmt::format("cannot write to standard output: {}", std::strerror(errno)),
-                "df -h .    (is the disk full?)", ExitCode::kIo);
+                errno == ENOSPC ? "df -h .    (is the disk full?)" : "> FILE after the command",
+                ExitCode::kIo);
   return static_cast<int>(ExitCode::kOk);
 }
 

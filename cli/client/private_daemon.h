@@ -1,14 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "cli/client/daemon_process.h"
+#include "cli/client/private_directory.h"
 
 namespace regrasp::cli {
 
-/// A daemon of this program's own, its socket in a directory of its own under /tmp; stopped, and
+/// A daemon of this program's own, its socket in a directory of its own; stopped, and
 /// the directory removed, when it goes out of scope, however that happens. Its arguments alone
 /// decide what it does: it sees neither the user's configuration nor $REGRASP_..., and what it
 /// writes goes with it unless `--output-dir` is among them.
@@ -24,7 +24,7 @@ class PrivateDaemon {
   const std::string& socket() const { return started_.socket; }
 
  private:
-  std::filesystem::path directory_;
+  PrivateDirectory directory_;
   StartedDaemon started_;
 };
 

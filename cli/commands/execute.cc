@@ -1,7 +1,12 @@
 #include "cli/commands/execute.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 #include "cli/client/context.h"
 #include "core/files/names.h"
@@ -19,6 +24,19 @@ CliError ForPeople(const CliError& error, const std::string& words) {
   const std::string cause = error.what();
   const bool whole = error.hint.empty() || error.is_list;
   return error.With(whole ? cause : cause + "; " + error.hint, next);
+}
+
+bool DirectoryHasGone() {
+  std::error_code error;
+  static_cast<void>(std::filesystem::current_path(error));
+  return error == std::errc::no_such_file_or_directory;
+}
+
+/// Before something is begun whose answer nobody could get. What only can be met while writing, a
+/// full disk say, is told then.
+void CheckOutputOpen() {
+  const int flags = ::fcntl(STDOUT_FILENO, F_GETFL);
+  if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) FailToPrint(EBADF);
 }
 
 }  // namespace
@@ -41,6 +59,7 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
         throw CliError(kUsage, fmt::format("argument {} is not UTF-8: {}", i + 1, Shown(words[i])),
                        "regrasp help");
     const Invocation invocation = Parse(argc, argv.data(), &options);
+    if (!options.quiet) CheckOutputOpen();
     Context context(options);
     ExitCode code = kOk;
     try {
@@ -56,6 +75,10 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
     return code;
   } catch (const CliError& error) {
     return fail(error);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(DirectoryHasGone()
+                    ? CliError(kIo, "the current directory has gone", "cd, then the same again")
+                    : CliError(kIo, error.what(), "regrasp doctor"));
   } catch (const std::exception& error) {
     return fail(
         CliError(kProtocol, std::string("unexpected answer: ") + error.what(), "regrasp doctor"));

@@ -120,6 +120,9 @@ ExitCode Plot(Context& context, const Invocation& typed) {
     throw CliError(kUsage,
                    "-o - writes the picture itself: it goes with none of --show, --json, --csv",
                    "regrasp plot " + Plain(invocation.params["name"]) + " -o - > FILE.png");
+  if (invocation.Has("output") && invocation.Text("output").empty())
+    throw CliError(kUsage, "-o '': a file needs a name",
+                   "regrasp plot " + Plain(invocation.params["name"]) + " -o FILE.png");
   const std::string suffix =
       CheckedSuffix(invocation.Text("output"), Plain(invocation.params["name"]));
   if (invocation.Has("run")) {

@@ -11,6 +11,7 @@
 #include "cli/client/program.h"
 #include "cli/grammar/units.h"
 #include "core/files/lower_suffix.h"
+#include "core/mcap/without_end.h"
 
 namespace regrasp::cli {
 namespace {
@@ -49,9 +50,10 @@ ExitCode RecordList(Context& context, const Invocation& invocation) {
     Table table({"file", ">size [MB]", ""});
     for (const Json& row : list)
       table.Row({Plain(At(row, "file")), Fixed(At(row, "bytes"), 1, 1e-6),
-                 At(row, "recording") == true  ? "being written"
-                 : At(row, "complete") == true ? "complete"
-                                               : "without an end: its writer was killed"});
+                 At(row, "recording") == true ? "being written"
+                 : At(row, "complete") == true
+                     ? "complete"
+                     : fmt::format("without an end: {}", kWhyWithoutEnd)});
     context.out().Add(table.Text(context.out()));
   });
   return kOk;
@@ -107,12 +109,23 @@ Invocation Checked(const Invocation& invocation) {
   return checked;
 }
 
+/// `what` appears whole under its name or not at all, so it is no stream.
+void RefuseStandardOutput(const Invocation& invocation, const char* what,
+                          const std::string& instead) {
+  if (invocation.Text("output") != "-") return;
+  throw CliError(
+      kUsage, fmt::format("-o -: {} is not written to standard output", what),
+      fmt::format("regrasp {} {} {}", invocation.command->words, invocation.Text("run"), instead));
+}
+
 ExitCode Replay(Context& context, const Invocation& invocation) {
   return Run(context, Checked(invocation));
 }
 
 ExitCode Export(Context& context, const Invocation& typed) {
   const Invocation invocation = Checked(typed);
+  RefuseStandardOutput(invocation, "an export",
+                       fmt::format("--format {} -o PATH", invocation.Text("format")));
   if (invocation.Has("output")) return Run(context, invocation);
   // Beside nobody's files: into the present directory, under the run's own name.
   const std::string format = invocation.Text("format");
@@ -124,6 +137,7 @@ ExitCode Export(Context& context, const Invocation& typed) {
 }
 
 ExitCode Video(Context& context, const Invocation& invocation) {
+  RefuseStandardOutput(invocation, "a film", "-o FILE.mp4");
   const std::string out = invocation.Text("output"), suffix = LowerSuffix(out);
   if (suffix != ".mp4" && suffix != ".gif")
     throw CliError(kUsage, fmt::format("-o {}: a film ends in .mp4 or .gif", out),
@@ -142,7 +156,10 @@ Arg RunArg() {
 }  // namespace
 
 std::string FindRun(Context& context, const std::string& name) {
-  if (fs::exists(name) || name.find('/') != std::string::npos) return name;
+  const std::string with_suffix = name + ".mcap";
+  if (fs::exists(name)) return name;
+  if (fs::exists(with_suffix)) return with_suffix;
+  if (name.find('/') != std::string::npos) return name;
   fs::path directory;
   try {
     directory = Plain(At(context.client().Call("status", Json::object()), "output_dir"));
@@ -150,7 +167,7 @@ std::string FindRun(Context& context, const std::string& name) {
     throw CliError(kNotFound, fmt::format("no file {}, and no daemon to ask for it", name),
                    "give the path of a run file");
   }
-  for (const fs::path& path : {directory / name, directory / (name + ".mcap")})
+  for (const fs::path& path : {directory / name, directory / with_suffix})
     if (fs::exists(path)) return path;
   throw CliError(kNotFound, fmt::format("no file {} here or in {}", name, directory.string()),
                  "regrasp record list");

@@ -140,7 +140,10 @@ struct Collector {
       if (command && command->words == known.words && arg.key == known.key) {
         for (const std::string& name : ask(std::string(known.method), std::string(known.field)))
           Add(name, arg.help);
-        candidates.files = candidates.files || arg.key == "run";
+        if (arg.key == "run") {
+          candidates.files = true;
+          candidates.suffix = ".mcap";
+        }
         return;
       }
     const MethodSpec* method = command ? command->method : nullptr;
@@ -223,7 +226,7 @@ std::string CompletionLines(const std::vector<std::string>& arguments) {
   }
   const std::string current = arguments.back() == "=" ? "" : arguments.back();
   const Candidates found = Complete(words, current, AskDaemon(socket));
-  std::string text = found.files ? ":files\n" : "";
+  std::string text = found.files ? ":files" + found.suffix + "\n" : "";
   for (const Candidate& candidate : found.words)
     text += candidate.word + "\t" + candidate.meaning + "\n";
   return text;

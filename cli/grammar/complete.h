@@ -15,6 +15,7 @@ struct Candidate {
 struct Candidates {
   std::vector<Candidate> words;  ///< those that begin with what is typed
   bool files = false;            ///< a file name may stand here
+  std::string suffix = {};       ///< of such files, "" for any; directories besides
 };
 
 /// The names that only a daemon knows for parameter `param` of `method` ("explore", "finger"); of
@@ -36,7 +37,8 @@ inline constexpr double kTabPatience = 0.15;
 AskNames AskDaemon(const std::string& socket, double patience_s = kTabPatience);
 
 /// `regrasp __complete WORD… CURRENT`, for the scripts of CompletionScript(): a line
-/// "WORD\tMEANING" each; the line ":files" when a file may stand there.
+/// "WORD\tMEANING" each; the line ":files", with the suffix that it has, when a file may stand
+/// there.
 std::string CompletionLines(const std::vector<std::string>& arguments);
 
 }  // namespace regrasp::cli

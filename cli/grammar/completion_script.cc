@@ -8,13 +8,16 @@ namespace {
 
 constexpr const char* kBash = R"(# bash completion for regrasp
 _regrasp() {
-  local line
+  local line current=${COMP_WORDS[COMP_CWORD]}
   COMPREPLY=()
   while IFS= read -r line; do
-    if [[ $line == :files ]]; then
+    if [[ $line == :files* ]]; then
       compopt -o filenames 2>/dev/null
-      while IFS= read -r line; do COMPREPLY+=("$line"); done \
-        < <(compgen -f -- "${COMP_WORDS[COMP_CWORD]}")
+      # A name that begins with - would be an option.
+      while IFS= read -r line; do
+        [[ $line == -* ]] && line=./$line
+        COMPREPLY+=("$line")
+      done < <(compgen -f -X "!*${line#:files}" -- "$current"; compgen -d -- "$current")
     else
       COMPREPLY+=("${line%%$'\t'*}")
     fi
@@ -26,16 +29,22 @@ complete -F _regrasp regrasp
 constexpr const char* kZsh = R"(#compdef regrasp
 _regrasp() {
   local -a items
-  local line files=
+  local line files= glob
   for line in "${(@f)$($words[1] __complete "${(@)words[2,CURRENT]}" 2>/dev/null)}"; do
-    if [[ $line == :files ]]; then
+    if [[ $line == :files* ]]; then
       files=yes
+      glob="*${line#:files}"
     elif [[ -n $line ]]; then
       items+=("${${line%%$'\t'*}//:/\\:}:${line#*$'\t'}")
     fi
   done
   (( ${#items} )) && _describe -V regrasp items
-  [[ -z $files ]] || _files
+  [[ -n $files ]] || return 0
+  # A name that begins with - would be an option.
+  local -a dashed
+  [[ $PREFIX == */* ]] || dashed=(./-${~glob}(N))
+  (( ${#dashed} )) && compadd -a dashed
+  _files -g "$glob"
 }
 if [[ $funcstack[1] == _regrasp ]]; then
   _regrasp "$@"
@@ -49,8 +58,11 @@ function __regrasp_complete
   set -l words (commandline -opc)
   set -l current (commandline -ct)
   for line in ($words[1] __complete $words[2..] "$current" 2>/dev/null)
-    if test "$line" = :files
-      __fish_complete_path "$current"
+    if string match -q -- ':files*' "$line"
+      set -l suffix (string escape --style=regex -- (string sub -s 7 -- "$line"))
+      # A name that begins with - would be an option.
+      __fish_complete_path "$current" | string match -r -- '^[^\t]*(?:/|'"$suffix"')(?:\t.*)?$' |
+        string replace -r -- '^-' './-'
     else
       echo $line
     end

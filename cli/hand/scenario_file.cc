@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "cli/hand/hand_command.h"
-#include "core/files/draft.h"
 #include "core/files/names.h"
+#include "core/files/output_file.h"
 
 namespace regrasp::hand {
 
@@ -43,6 +43,11 @@ void ScenarioFile::Check() const {
   if (!fs::is_directory(directory, ignored))
     throw Failure(ExitCode::kIo, fmt::format("{}: no such directory", directory.string()),
                   "mkdir -p " + directory.string());
+  try {
+    CheckWritable(path_.string(), Draft::Existing::kKeep);
+  } catch (const WriteError& error) {
+    throw Failure(ExitCode::kIo, error.what(), "another place for -o");
+  }
 }
 
 std::string ScenarioFile::NameOfObject(const std::string& object) const {

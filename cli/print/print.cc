@@ -82,15 +82,21 @@ std::string CsvTable::Rows(const std::vector<Json>& rows) {
   return text;
 }
 
+void FailToPrint(int error) {
+  throw CliError(kIo, fmt::format("cannot write to standard output: {}", std::strerror(error)),
+                 error == ENOSPC ? "df -h .    (is the disk full?)"
+                                 : "> FILE after the command, or -q for no answer");
+}
+
 void Output::Flush() {
   std::size_t done = 0;
   while (done < text_.size()) {
     const ssize_t n = ::write(STDOUT_FILENO, text_.data() + done, text_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
+      const int error = errno;
       text_.clear();
-      throw CliError(kIo, fmt::format("cannot write to standard output: {}", std::strerror(errno)),
-                     "df -h .    (is the disk full?)");
+      FailToPrint(error);
     }
     done += static_cast<std::size_t>(n);
   }

@@ -72,6 +72,9 @@ class Output {
   CsvTable csv_;
 };
 
+/// Throws CliError(kIo): standard output takes nothing, because of `error` (errno's).
+[[noreturn]] void FailToPrint(int error);
+
 /// Aligned columns, two blanks apart. Cells may hold colour codes and UTF-8.
 class Table {
  public:

@@ -11,7 +11,7 @@
 
 #include "cli/run/resample.h"
 #include "cli/run/run_tables.h"
-#include "core/files/draft.h"
+#include "core/files/output_file.h"
 #include "core/mcap/mcap_writer.h"
 
 namespace regrasp::run {
@@ -113,9 +113,8 @@ McapSummary ResampleFile(const std::string& path, const ExportOptions& options,
 
 ExportResult ExportRun(const std::string& path, const ExportOptions& options, const OnRun& on_run) {
   const std::string& format = options.format;
+  CheckWritable(options.out, Draft::Existing::kKeep);
   RemoveAbandonedDrafts(fs::path(options.out).parent_path());
-  Draft draft(options.out, Draft::Existing::kKeep,
-              format == "csv" ? Draft::Kind::kDirectory : Draft::Kind::kFile);
   ExportResult result;
   const Source source = [&](const OnMessage& to_output) {
     const OnMessage on_message = [&](const McapMessage& message) {
@@ -128,18 +127,21 @@ ExportResult ExportRun(const std::string& path, const ExportOptions& options, co
   };
   McapSummary summary;
   result.files = 1;
-  if (format == "mcap") {
-    summary = WriteMcap(path, source, draft.path());
-  } else {
+  const auto write = [&](const std::string& draft) {
+    if (format == "mcap") {
+      summary = WriteMcap(path, source, draft);
+      return;
+    }
     const RunTables run = ReadTables(path, source, &summary);
-    if (format == "npz") WriteNpz(run, draft.path());
+    if (format == "npz") WriteNpz(run, draft);
     if (format == "csv") {
       for (const auto& [name, rows] : run.topics)
-        WriteCsv(run, rows, fs::path(draft.path()) / (name + ".csv"));
+        WriteCsv(run, rows, fs::path(draft) / (name + ".csv"));
       result.files = run.topics.size();
     }
-  }
-  draft.Commit();
+  };
+  WriteOutput(options.out, Draft::Existing::kKeep, write,
+              format == "csv" ? Draft::Kind::kDirectory : Draft::Kind::kFile);
   result.messages = summary.messages;
   result.complete = summary.complete;
   result.lost = std::move(summary.lost);

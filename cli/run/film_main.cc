@@ -12,6 +12,7 @@
 #include "cli/run/plot_run.h"
 #include "cli/run/program.h"
 #include "cli/run/video.h"
+#include "core/files/output_file.h"
 
 namespace regrasp::run {
 namespace {
@@ -59,6 +60,7 @@ ExitCode VideoCommand(const Command& command) {
   options.scene_only = command.Has("--scene-only");
   const std::string& out = command.options.at("--output");
   const auto begin = Clock::now();
+  CheckWritable(out, Draft::Existing::kKeep);
   RunWindow window(command.file, options.stretch, kCurveWindow_s);
   const Json differences = TellDifferences(window.file());
   if (!window.note().empty()) Note(window.note());
@@ -110,7 +112,11 @@ int main(int argc, char** argv) {
   ::mallopt(M_MMAP_THRESHOLD, 32 << 20);
   ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
   ::mallopt(M_ARENA_MAX, 1);
+  // A film that is begun is put away; what takes longer than that to notice ends by the alarm.
   for (const int number : {SIGINT, SIGTERM, SIGHUP})
-    std::signal(number, [](int seen) { signal_seen = seen; });
+    std::signal(number, [](int seen) {
+      signal_seen = seen;
+      ::alarm(3);
+    });
   return RunVerb(argc, argv, {{"plot", PlotCommand}, {"video", VideoCommand}});
 }

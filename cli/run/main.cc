@@ -8,6 +8,7 @@
 #include "cli/run/export_run.h"
 #include "cli/run/program.h"
 #include "cli/run/replay_run.h"
+#include "core/mcap/without_end.h"
 
 namespace regrasp::run {
 namespace {
@@ -29,8 +30,8 @@ OnState Pace(const Command& command) {
   };
 }
 
-const char* EndText(bool complete) {
-  return complete ? "" : "\n  the file has no end: its writer was killed, or it was cut";
+std::string EndText(bool complete) {
+  return complete ? "" : fmt::format("\n  the file has no end: {}", kWhyWithoutEnd);
 }
 
 ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayResult& result,

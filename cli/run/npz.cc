@@ -36,7 +36,7 @@ std::vector<std::uint32_t> CodePoints(const std::string& utf8) {
 }  // namespace
 
 Npz::Npz(const std::string& path) : path_(path), out_(path, std::ios::binary) {
-  if (!out_) throw std::runtime_error("cannot create " + path);
+  if (!out_) FailToWrite(path);
 }
 
 void Npz::Add(const std::string& name, const std::vector<std::size_t>& shape,

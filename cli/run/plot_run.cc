@@ -9,7 +9,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/run/run_window.h"
-#include "core/files/draft.h"
+#include "core/files/output_file.h"
 #include "core/journal/provenance.h"
 #include "snapshots/plots.h"
 #include "snapshots/refused.h"
@@ -169,8 +169,12 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
                    fmt::format("{} shows one run, {} are given; only comparison shows several",
                                name, paths.size()),
                    PlotCommand(name, paths.front()));
-  RefuseMissingDirectory(out);
-  Draft draft(out, Draft::Existing::kReplace);
+  CheckWritable(out, Draft::Existing::kReplace);
+  try {
+    RefuseMissingDirectory(out);
+  } catch (const std::runtime_error& error) {
+    throw WriteError(error.what());
+  }
   std::vector<Pictured> runs;
   if (comparison)
     runs = Compared(paths);
@@ -182,14 +186,14 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
   options.changed = input.options.changed;
   input.options = options;
   try {
-    DrawPlot(name, input, draft.path());
+    WriteOutput(out, Draft::Existing::kReplace,
+                [&](const std::string& draft) { DrawPlot(name, input, draft); });
   } catch (const PictureRefused& refused) {
     throw Refusal(refused, name, paths.front(), options, last_s);
   }
   std::vector<std::string> notes;
   for (const Pictured& run : runs)
     if (!run.note.empty()) notes.push_back(run.note);
-  draft.Commit();
   return notes;
 }
 

@@ -11,6 +11,7 @@
 
 #include "cli/client/errors.h"
 #include "core/files/names.h"
+#include "core/files/output_file.h"
 #include "core/hand/model_error.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
@@ -37,6 +38,17 @@ int TellFailure(const Command& command, const std::string& message, const std::s
   else
     fmt::print(stderr, "regrasp: {}\n  try: {}\n", message, hint);
   return static_cast<int>(code);
+}
+
+/// The command again, for another place.
+std::string WithOtherFile(const Command& command) {
+  const auto option = [&](const char* name) {
+    const auto found = command.options.find(name);
+    return found == command.options.end() ? "" : found->second + " ";
+  };
+  std::string words = "regrasp " + command.verb + " " + option("--name") + command.file + " ";
+  if (command.Has("--format")) words += "--format " + option("--format");
+  return words + "-o OTHER_FILE";
 }
 
 }  // namespace
@@ -114,6 +126,9 @@ int RunVerb(int argc, char** argv,
   } catch (const cli::CliError& e) {
     return TellFailure(command, ShownText(e.what()),
                        e.hint.empty() ? "regrasp help " + command.verb : ShownText(e.hint), e.code);
+  } catch (const WriteError& e) {
+    return TellFailure(command, ShownText(e.what()), ShownText(WithOtherFile(command)),
+                       ExitCode::kIo);
   } catch (const ModelError& e) {
     return TellFailure(command, e.what(), "regrasp record list", ExitCode::kIo);
   } catch (const std::exception& e) {

@@ -12,8 +12,8 @@
 
 #include "cli/run/gif.h"
 #include "cli/run/mp4_index.h"
-#include "core/files/draft.h"
 #include "core/files/lower_suffix.h"
+#include "core/files/output_file.h"
 #include "snapshots/snapshots.h"
 
 namespace regrasp::run {
@@ -37,8 +37,8 @@ class H264Film : public Film {
     writer_.open(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('a', 'v', 'c', '1'), fps, size);
     if (!writer_.isOpened())
       throw std::runtime_error(
-          "no H.264 encoder: OpenCV's FFmpeg has none, or " + path +
-          " cannot be written; install libx264 (Debian: libavcodec59), or make a .gif");
+          "no H.264 encoder: OpenCV's FFmpeg has none; install libx264 (Debian: libavcodec59), or "
+          "make a .gif");
   }
   void Add(const cv::Mat& picture) override { writer_.write(picture); }
   void Finish() override {
@@ -140,15 +140,11 @@ class Painter {
   std::vector<Event> events_;
 };
 
-}  // namespace
+/// Ends a draft that is not to be kept.
+struct Interrupted {};
 
-VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std::string& out,
-                       const OnPicture& on_picture) {
-  const std::string suffix = LowerSuffix(out);
-  if (suffix != ".mp4" && suffix != ".gif")
-    throw std::runtime_error(out + ": a film's name ends in .mp4 or .gif");
-  RemoveAbandonedDrafts(fs::path(out).parent_path());
-  Draft draft(out, Draft::Existing::kKeep);
+VideoResult Shoot(RunWindow* window, const VideoOptions& options, const std::string& suffix,
+                  const std::string& draft, const OnPicture& on_picture) {
   const SessionConfig& config = window->segment().journal->config;
   const double dt = config.world.dt, step_s = options.speed / options.fps;
   const double end_s = static_cast<double>(window->end_tick()) * dt;
@@ -160,9 +156,9 @@ VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std
   Painter painter(config, options.scene_only);
   std::unique_ptr<Film> film;
   if (suffix == ".mp4")
-    film = std::make_unique<H264Film>(draft.path(), options.fps, painter.size());
+    film = std::make_unique<H264Film>(draft, options.fps, painter.size());
   else
-    film = std::make_unique<GifFilm>(draft.path(), options.fps, painter.size());
+    film = std::make_unique<GifFilm>(draft, options.fps, painter.size());
 
   // What has been drawn is written while the next pictures are drawn.
   std::future<void> writing;
@@ -189,8 +185,26 @@ VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std
   }
   written();
   film->Finish();
-  draft.Commit();
   result.duration_s = result.frames / options.fps;
+  return result;
+}
+
+}  // namespace
+
+VideoResult WriteVideo(RunWindow* window, const VideoOptions& options, const std::string& out,
+                       const OnPicture& on_picture) {
+  const std::string suffix = LowerSuffix(out);
+  if (suffix != ".mp4" && suffix != ".gif")
+    throw std::runtime_error(out + ": a film's name ends in .mp4 or .gif");
+  RemoveAbandonedDrafts(fs::path(out).parent_path());
+  VideoResult result;
+  try {
+    WriteOutput(out, Draft::Existing::kKeep, [&](const std::string& draft) {
+      result = Shoot(window, options, suffix, draft, on_picture);
+      if (result.interrupted) throw Interrupted();
+    });
+  } catch (const Interrupted&) {
+  }
   return result;
 }
 

@@ -11,7 +11,7 @@ namespace regrasp::run {
 
 std::string WhyNotWritten(const std::string& path) {
   const std::string some(1 << 16, '\0');
-  const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   std::string cause = fd < 0 ? std::strerror(errno) : "";
   // A write that has room for a part succeeds; the next one does not.
   for (int k = 0; k < 2 && cause.empty(); ++k)

@@ -31,8 +31,9 @@ std::vector<std::string> CommandWords(const std::string& line) {
   return words;
 }
 
-/// Files and folders that begin with `last`; folders end with '/'.
-std::vector<std::string> Files(const std::string& last) {
+/// Files with this suffix ("": any) and folders that begin with `last`; folders end with '/'. A
+/// name that begins with - would be an option.
+std::vector<std::string> Files(const std::string& last, const std::string& suffix) {
   namespace fs = std::filesystem;
   const auto slash = last.rfind('/');
   const std::string folder = slash == std::string::npos ? "" : last.substr(0, slash + 1);
@@ -41,8 +42,10 @@ std::vector<std::string> Files(const std::string& last) {
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with('.') && last.size() == folder.size()) continue;  // hidden
-    const std::string path = folder + name + (entry.is_directory(error) ? "/" : "");
-    if (path.starts_with(last)) names.push_back(path);
+    const bool is_folder = entry.is_directory(error);
+    if (!is_folder && !name.ends_with(suffix)) continue;
+    const std::string path = folder + name + (is_folder ? "/" : "");
+    if (path.starts_with(last)) names.push_back((path.starts_with('-') ? "./" : "") + path);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -94,7 +97,7 @@ ExitCode Converse(Context& context) {
         Complete(typed.words, typed.last,
                  AskDaemon(options.socket, options.timeout_s.value_or(kTabPatience)));
     std::vector<std::string> words;
-    if (found.files) words = Files(typed.last);
+    if (found.files) words = Files(typed.last, found.suffix);
     for (const Candidate& candidate : found.words) words.push_back(candidate.word);
     return LineEditor::Completion{std::move(words), typed.last_begin};
   };

@@ -1,16 +1,17 @@
 // Requests that produce files.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <optional>
 
+#include "core/files/output_file.h"
 #include "core/journal/provenance.h"
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
-#include "daemon/output/output_file.h"
 #include "daemon/requests/handlers.h"
 #include "snapshots/plots.h"
 #include "snapshots/refused.h"
@@ -110,13 +111,16 @@ void Draw(Job* job) {
     // Chosen here, by the only thread that draws.
     if (job->file.empty())
       job->file = FreeFile(job->directory, job->name, ".png").filename().string();
-    job->bytes = WriteOutput(job->directory / job->file,
-                             job->overwrite ? Draft::Existing::kReplace : Draft::Existing::kKeep,
-                             [job](const std::string& draft) { DrawInto(*job, draft); });
+    WriteOutput(job->directory / job->file,
+                job->overwrite ? Draft::Existing::kReplace : Draft::Existing::kKeep,
+                [job](const std::string& draft) { DrawInto(*job, draft); });
+    job->bytes = std::filesystem::file_size(job->directory / job->file);
   } catch (const RpcException& e) {
     job->error = e.error();
   } catch (const std::exception& e) {
-    job->error = {ErrorCode::kIo, e.what(), "regrasp status    (output_dir)", {}, {}};
+    const bool writable = ::access(job->directory.c_str(), W_OK | X_OK) == 0;
+    const char* hint = writable ? "regrasp status    (output_dir)" : "regrasp up --output-dir DIR";
+    job->error = {ErrorCode::kIo, e.what(), hint, {}, {}};
   }
 }
 

@@ -6,7 +6,6 @@
 #include "core/hand/kinematics.h"
 #include "core/session/start.h"
 #include "core/world/overlap_text.h"
-#include "daemon/output/output_file.h"
 #include "daemon/output/recorder.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"

@@ -4,10 +4,10 @@
 #include <spdlog/spdlog.h>
 
 #include "core/files/draft.h"
+#include "core/files/output_file.h"
 #include "core/journal/provenance.h"
 #include "daemon/output/files.h"
 #include "daemon/output/incident.h"
-#include "daemon/output/output_file.h"
 #include "daemon/output/recorder.h"
 #include "daemon/requests/service.h"
 #include "daemon/wire/frame_json.h"

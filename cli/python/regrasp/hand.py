@@ -1,5 +1,6 @@
 """A hand: every method of the daemon, and a private daemon where one is wanted."""
 
+import fcntl
 import os
 import pathlib
 import shutil
@@ -37,12 +38,18 @@ class Hand(Methods, Connection):
             self._daemon.stop()
 
 
+def _directory_variable(name):
+    """$NAME where it is an absolute path, else "": relative ones are ignored."""
+    value = os.environ.get(name, "")
+    return value if os.path.isabs(value) else ""
+
+
 def configured_socket():
     """`socket` of the configuration file, or None: of $REGRASP_CONFIG, else of the first regrasp/regraspd.toml in
     $XDG_CONFIG_HOME (~/.config) and /etc. Raises OSError and ValueError where the file cannot be read."""
     file = os.environ.get("REGRASP_CONFIG")
     if not file:
-        home = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
+        home = _directory_variable("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
         file = next(filter(os.path.exists, (folder + "/regrasp/regraspd.toml" for folder in (home, "/etc"))), None)
     if not file:
         return None
@@ -51,7 +58,12 @@ def configured_socket():
             named = tomllib.load(text).get("socket")
         except ValueError as error:
             raise ValueError(f"{file}: {error}") from None
-    return named if isinstance(named, str) else None
+    if named is None or named == "":
+        return None
+    place = os.path.expanduser(named) if isinstance(named, str) else ""
+    if not os.path.isabs(place):
+        raise ValueError(f"{file}: socket = {named!r}: expected an absolute path, or one that begins with ~/")
+    return place
 
 
 def find_socket():
@@ -59,7 +71,7 @@ def find_socket():
     socket is."""
     if named := os.environ.get("REGRASP_SOCKET") or configured_socket():
         return named
-    folders = [os.environ.get("XDG_RUNTIME_DIR", "/run") + "/regrasp", "/run/regrasp", f"/tmp/regrasp-{os.getuid()}"]
+    folders = [(_directory_variable("XDG_RUNTIME_DIR") or "/run") + "/regrasp", "/run/regrasp", f"/tmp/regrasp-{os.getuid()}"]
     paths = [folder + "/regrasp.sock" for folder in folders]
     return next(filter(os.path.exists, paths), paths[0])
 
@@ -108,6 +120,50 @@ def start(seed=1, hand=None, object=None, noise=None, clock="lockstep", stepper=
     return connected
 
 
+def _abandoned(path):
+    """Whether a directory is this user's and neither the program that made it nor its daemon lives: both have a lock."""
+    try:
+        directory = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    except OSError:
+        return False
+    locks = [directory]
+    try:
+        if os.fstat(directory).st_uid != os.geteuid():
+            return False
+        fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            locks.append(os.open("regrasp.sock.lock", os.O_RDONLY | os.O_NOFOLLOW, dir_fd=directory))
+        except FileNotFoundError:
+            return True
+        fcntl.flock(locks[1], fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return True
+    except OSError:
+        return False
+    finally:
+        for lock in locks:
+            os.close(lock)
+
+
+def private_directory():
+    """A new directory, and its lock, for a private daemon. What others left behind there whose program was killed goes."""
+    base = tempfile.gettempdir()
+    if len(os.fsencode(base)) > 107 - len("/regrasp-python-XXXXXXXX/regrasp.sock"):
+        base = "/tmp"  # the path of a socket has at most 107 bytes
+    for left in (*pathlib.Path(base).glob("regrasp-private-*"), *pathlib.Path(base).glob("regrasp-python-*")):
+        if _abandoned(left):
+            shutil.rmtree(left, ignore_errors=True)
+    while True:
+        directory = tempfile.mkdtemp(prefix="regrasp-python-", dir=base)
+        try:
+            lock = os.open(directory, os.O_RDONLY | os.O_DIRECTORY)
+        except FileNotFoundError:
+            continue  # somebody swept before it had a lock
+        fcntl.flock(lock, fcntl.LOCK_SH)
+        if os.path.exists(directory):
+            return directory, lock
+        os.close(lock)
+
+
 class _Daemon:
     """regraspd in a directory of its own under the temporary directory, until `stop`. In a session of its own: Ctrl-C at
     a terminal ends a call, not the daemon, which ends with the interpreter: that has the other end of its input."""
@@ -115,7 +171,7 @@ class _Daemon:
     def __init__(self, words, output_dir):
         program = find_daemon()
         self._owner = os.getpid()
-        self._directory = tempfile.mkdtemp(prefix="regrasp-python-")
+        self._directory, self._lock = private_directory()
         private = pathlib.Path(self._directory)
         self.socket = str(private / "regrasp.sock")
         output = pathlib.Path(output_dir) if output_dir else private / "output"
@@ -153,3 +209,4 @@ class _Daemon:
         self._process.stdin.close()
         self._log.close()
         shutil.rmtree(self._directory, ignore_errors=True)
+        os.close(self._lock)
