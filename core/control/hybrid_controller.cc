@@ -18,10 +18,8 @@ FingerPinv DampedPinv(const FingerJacobian& J, double lambda) {
 /// Force on the fingertip of a reaching finger: a spring to its target, as strong as when sliding.
 Vector3d ReachForce(const FingerEstimate& finger, const FingerTask& task,
                     const ControlParameters& parameters) {
-  Vector3d error = task.p_target_W - finger.p_WF;
   const double reach = parameters.slide_force_limit / parameters.slide_stiffness;
-  if (error.norm() > reach) error *= reach / error.norm();
-  return parameters.slide_stiffness * error;
+  return parameters.slide_stiffness * LimitNorm(task.p_target_W - finger.p_WF, reach);
 }
 
 /// What the object feels of the force that a sliding finger is asked for: friction bounds the
@@ -30,9 +28,7 @@ Vector3d SlideForceOnObject(const FingerEstimate& finger, const FingerTask& task
                             const Vector3d& commanded, const ControlParameters& parameters) {
   const Vector3d tangential = TangentPart(commanded, finger.normal_W);
   const double drag = parameters.slide_friction_share * task.force;
-  const double t = tangential.norm();
-  return -task.force * finger.normal_W +
-         (t > drag ? Vector3d(tangential * (drag / t)) : tangential);
+  return -task.force * finger.normal_W + LimitNorm(tangential, drag);
 }
 
 /// Springs to the resting posture and away from joint limits [N m].
@@ -93,9 +89,8 @@ Vector3d HybridController::SlideForce(const FingerEstimate& finger, const Finger
                                       const ControlParameters& parameters, FingerState* state) {
   state->p_ref_W += (task.v_W + v_surface) * dt_;
   const double reach = parameters.slide_force_limit / parameters.slide_stiffness;
-  Vector3d error = TangentPart(state->p_ref_W - finger.p_WF, finger.normal_W);
-  const double norm = error.norm();
-  if (norm > reach) error *= reach / norm;
+  const Vector3d error =
+      LimitNorm(TangentPart(state->p_ref_W - finger.p_WF, finger.normal_W), reach);
   state->p_ref_W = finger.p_WF + error;  // forgets the normal part, and what is out of reach
   if (finger.in_contact) {
     state->normal_integral += parameters.normal_force_integral * dt_ * (task.force - finger.force);

@@ -4,11 +4,18 @@
 /// does not count as a maximum. In W: a finger that sticks drags the object along, and a point of
 /// the object would run away from it.
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/common/frames.h"
 
 namespace regrasp {
+
+/// By how much of its size `phi` is above `before`; below 0 it has fallen.
+inline double RelativeGain(double phi, double before) {
+  const double size = std::max(1e-6, std::abs(before));
+  return phi / size - before / size;
+}
 
 /// Whether `phi` is above `before` by more than gain - 1 of its size.
 inline bool Gains(double phi, double before, double gain) {

@@ -59,4 +59,9 @@ struct ExplorationParameters {
   double reload_limit_s = 1.0;     ///< no surface to stand on after so long without contact
 };
 
+/// N_max: the one asked for, or the parameter's where that is 0.
+inline int MaxCycles(int asked, const ExplorationParameters& parameters) {
+  return asked > 0 ? asked : parameters.max_cycles;
+}
+
 }  // namespace regrasp

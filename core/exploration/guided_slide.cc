@@ -26,14 +26,10 @@ void GuidedSlide::Enter(Phase phase) {
   ticks_ = 0;
 }
 
-int GuidedSlide::MaxCycles(const ExplorationParameters& parameters) const {
-  return request_.max_cycles > 0 ? request_.max_cycles : parameters.max_cycles;
-}
-
 bool GuidedSlide::TryAgain(const SlideProfile& profile,
                            const ExplorationParameters& parameters) const {
   return tries_ + 1 < profile.tries && !Gains(best_.phi(), phi_initial_, parameters.little_gain) &&
-         2 * cycles() < MaxCycles(parameters);
+         2 * cycles() < MaxCycles(request_.max_cycles, parameters);
 }
 
 void GuidedSlide::EndSlide(End end) {
@@ -125,7 +121,7 @@ void GuidedSlide::StartAlgorithm(const SurfaceExploration::Input& input,
                                  const ExplorationParameters& parameters) {
   algorithm_.Start(input, request_.estimator,
                    request_.seed + kTryStride * static_cast<std::uint64_t>(tries_),
-                   MaxCycles(parameters) - cycles_before_, parameters);
+                   MaxCycles(request_.max_cycles, parameters) - cycles_before_, parameters);
   if (tries_ == 0 && !request_.gradient_W.isZero()) algorithm_.StartFrom(request_.gradient_W);
   best_.StartWaiting();
   Enter(Phase::kExplore);

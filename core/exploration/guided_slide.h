@@ -176,7 +176,6 @@ class GuidedSlide {
   void Remember(const ControlTick& tick, const SurfaceExploration::Input& input);
   void StartAlgorithm(const SurfaceExploration::Input& input,
                       const ExplorationParameters& parameters);
-  int MaxCycles(const ExplorationParameters& parameters) const;
   /// Whether another try is due: little was gained and at least half of N_max is left.
   bool TryAgain(const SlideProfile& profile, const ExplorationParameters& parameters) const;
   void EndSlide(End end);

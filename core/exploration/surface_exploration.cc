@@ -40,7 +40,7 @@ void SurfaceExploration::Start(const Input& input, Estimator estimator, std::uin
   *this = SurfaceExploration();
   estimator_ = estimator;
   random_ = RandomStream(seed, 0);
-  max_cycles_ = max_cycles > 0 ? max_cycles : parameters.max_cycles;
+  max_cycles_ = MaxCycles(max_cycles, parameters);
   p_WC_start_ = p_WC_prev_ = input.p_WC;
   walls_start_ = input.walls;
   phi_prev_ = input.phi;

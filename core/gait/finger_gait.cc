@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/gait/may_not_leave.h"
+
 namespace regrasp {
 
 std::string_view Name(GaitPhase phase) {
@@ -120,29 +122,6 @@ bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench,
   return happened_.error_position > position || happened_.error_rotation > rotation;
 }
 
-Regrasp::Request FingerGait::RequestOf(const GaitStep& step, int next,
-                                       const ControlTick& tick) const {
-  Regrasp::Request request;
-  request.slide.finger = step.finger;
-  request.slide.estimator = tick.gait.estimator;
-  request.hop = tick.gait.hop;
-  request.over_surface = planned(tick);
-  const bool scarce = planned(tick) && tick.margins.without[step.finger] < tick.gait.margin_wanted;
-  request.transfer_s = scarce ? tick.gait.careful_s : tick.gait.transfer_s;
-  if (planned(tick) && !scarce && rubs_ < tick.gait.rubs) request.rub_s = tick.gait.rub_s;
-  request.explore = Explores(tick, step.finger);
-  request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
-  request.slide.criterion = tick.gait.criterion;
-  request.slide.turn_axis_W = sign_ * request_.axis_W;
-  if (step.objective == GaitObjective::kStabilityWithoutNext && next >= 0) {
-    request.slide.criterion = Criterion::kStability;
-    request.slide.without = next;
-  }
-  request.slide.gradient_W = gradient_[step.finger];
-  request.disc_share = DiscShare(tick);
-  return request;
-}
-
 bool FingerGait::MustBreakOff(const ControlTick& tick, const ObjectWrench& wrench) {
   const GaitParameters& parameters = tick.gait;
   if (Disturbed(tick.estimate, wrench, parameters.abort_position, parameters.abort_rotation))
@@ -198,9 +177,8 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
                   "the object cannot turn further: no farther than before in %d cycles",
                   stale_cycles_);
   } else if (refused_finger_ >= 0) {
-    std::snprintf(error_, sizeof(error_),
-                  "%s may not leave: the load margin without it is %.3f N, below %.3f N",
-                  tick.hand.fingers[refused_finger_].name.c_str(), refused_margin_, refused_below_);
+    std::ranges::copy(MayNotLeave(tick.hand, refused_finger_, refused_margin_, refused_below_),
+                      error_);
   } else {
     const int finger = manipulation_.end_finger();
     std::snprintf(error_, sizeof(error_), "the object cannot turn further: %s%s%s",

@@ -3,6 +3,7 @@
 /// The finger gait (Sec. III b): object motion with all fingers, then one finger after the other
 /// regrasps (gait_table.h), again and again, until the object has turned as far as wanted.
 
+#include "core/gait/explored_gain.h"
 #include "core/gait/forgiveness.h"
 #include "core/gait/gait_table.h"
 #include "core/gait/landing_plan.h"
@@ -243,12 +244,7 @@ class FingerGait {
   std::array<Vector3d, kMaxFingers> found_ = ZeroVectors<kMaxFingers>();
   // The gradient with which its last exploration ended, in W [1/m]; zero: none yet.
   std::array<Vector3d, kMaxFingers> gradient_ = ZeroVectors<kMaxFingers>();
-  // Relative gain of its last explorations; 1: none yet.
-  std::array<double, kMaxFingers> gain_ = [] {
-    std::array<double, kMaxFingers> gain{};
-    gain.fill(1);
-    return gain;
-  }();
+  std::array<ExploredGain, kMaxFingers> gain_{};  // of its last explorations
   // By how much each finger's target is turned back about the axis: half of what a motion that
   // ended at this finger's limit still wanted is added, so that it has more way the next time
   // [rad].

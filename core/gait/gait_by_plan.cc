@@ -50,7 +50,7 @@ void FingerGait::EndPlan(const ControlTick& tick) {
 
 void FingerGait::StartRegrasp(const ControlTick& tick, int finger, const Landing& landing) {
   landing_[finger] = landing;
-  GaitStep step{finger, GaitObjective::kManipulability};
+  GaitStep step{finger, GaitObjective::kGaitCriterion};
   int next = -1;
   for (std::size_t k = 0; k < order_.size(); ++k) {
     if (order_[k].finger != finger) continue;

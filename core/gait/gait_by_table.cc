@@ -1,5 +1,5 @@
-/// The finger gait by the paper's table alone: who regrasps next, and contacts that let the
-/// opposing finger leave.
+/// The finger gait by the paper's table alone: who regrasps next and what for, and contacts that
+/// let the opposing finger leave.
 #include <algorithm>
 
 #include "core/gait/finger_gait.h"
@@ -29,13 +29,10 @@ void FingerGait::Remember(int finger, const ControlTick& tick, const ObjectWrenc
   const Vector3d shift = tick.finger(finger).p_WC - wrench.p_ref() - HomeOf(finger, tick.gait).p_OC;
   Vector3d& found = found_[finger];
   found += tick.gait.found_share * (shift - found);
-  const double limit = tick.gait.disc_inside * tick.gait.disc_radius;
-  if (found.norm() > limit) found *= limit / found.norm();
+  found = LimitNorm(found, tick.gait.disc_inside * tick.gait.disc_radius);
   const GuidedSlide& slide = regrasp_.slide();
   gradient_[finger] = slide.algorithm().gradient_W();
-  const double gain = slide.phi_final() / std::max(1e-6, slide.phi_initial()) - 1;
-  const double weight = gain_[finger] == 1 ? 1.0 : tick.gait.found_share;
-  gain_[finger] += weight * (gain - gain_[finger]);
+  gain_[finger].Add(RelativeGain(slide.phi_final(), slide.phi_initial()), tick.gait.found_share);
 }
 
 bool FingerGait::Explores(const ControlTick& tick, int finger) const {
@@ -43,7 +40,8 @@ bool FingerGait::Explores(const ControlTick& tick, int finger) const {
   if (parameters.mode != GaitMode::kExploring || request_.make_room_for >= 0 ||
       parameters.explore == GaitExplore::kNever)
     return false;
-  return parameters.explore == GaitExplore::kAlways || gain_[finger] >= parameters.explore_gain ||
+  return parameters.explore == GaitExplore::kAlways ||
+         gain_[finger].at_least(parameters.explore_gain) ||
          (planned(tick) && landing_[finger].unknown >= parameters.explore_unknown);
 }
 
@@ -53,6 +51,29 @@ double FingerGait::DiscShare(const ControlTick& tick) const {
   const double margin = tick.margins.without[order_.back().finger] - parameters.margin_min;
   const double wanted = tick.gait.disc_full * parameters.margin_wanted - parameters.margin_min;
   return wanted > 0 ? std::clamp(margin / wanted, 0.0, 1.0) : 1.0;
+}
+
+Regrasp::Request FingerGait::RequestOf(const GaitStep& step, int next,
+                                       const ControlTick& tick) const {
+  Regrasp::Request request;
+  request.slide.finger = step.finger;
+  request.slide.estimator = tick.gait.estimator;
+  request.hop = tick.gait.hop;
+  request.over_surface = planned(tick);
+  const bool scarce = planned(tick) && tick.margins.without[step.finger] < tick.gait.margin_wanted;
+  request.transfer_s = scarce ? tick.gait.careful_s : tick.gait.transfer_s;
+  if (planned(tick) && !scarce && rubs_ < tick.gait.rubs) request.rub_s = tick.gait.rub_s;
+  request.explore = Explores(tick, step.finger);
+  request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
+  request.slide.criterion = tick.gait.criterion;
+  request.slide.turn_axis_W = sign_ * request_.axis_W;
+  if (step.objective == GaitObjective::kStabilityWithoutNext && next >= 0) {
+    request.slide.criterion = Criterion::kStability;
+    request.slide.without = next;
+  }
+  request.slide.gradient_W = gradient_[step.finger];
+  request.disc_share = DiscShare(tick);
+  return request;
 }
 
 void FingerGait::Next(const ControlTick& tick, const ObjectWrench& wrench) {

@@ -11,10 +11,12 @@
 
 namespace regrasp {
 
-/// What the free finger maximises while it regrasps.
+/// Which Criterion the free finger maximises while it regrasps and explores, and of which grasp.
 enum class GaitObjective : std::uint8_t {
   kNone,
-  kManipulability,       ///< of the free finger; stability once that is below its threshold
+  /// gait.criterion, of the grasp; by default `switched`: manipulability of the free finger, or
+  /// stability once that is below its threshold.
+  kGaitCriterion,
   kStabilityWithoutNext  ///< stability of the grasp without the next finger of the table
 };
 
@@ -36,9 +38,9 @@ struct GaitRow {
 inline constexpr std::array<GaitRow, 4> kGaitTable{{
     // free finger               objective                              the paper's states
     {GaitRole::kNobody, GaitObjective::kNone},                         // object motion
-    {GaitRole::kNeighbours, GaitObjective::kManipulability},           // S_L, S_R, S_M
+    {GaitRole::kNeighbours, GaitObjective::kGaitCriterion},            // S_L, S_R, S_M
     {GaitRole::kLastNeighbour, GaitObjective::kStabilityWithoutNext},  // S_F
-    {GaitRole::kOpposing, GaitObjective::kManipulability},             // S_T
+    {GaitRole::kOpposing, GaitObjective::kGaitCriterion},              // S_T
 }};
 
 /// The name of a state of the gait.
@@ -58,7 +60,7 @@ int OpposingFinger(const Estimate& estimate, FingerSet fingers);
 /// One step of a gait made for a hand: a row, with its finger.
 struct GaitStep {
   int finger = -1;
-  GaitObjective objective = GaitObjective::kManipulability;
+  GaitObjective objective = GaitObjective::kGaitCriterion;
   template <typename V>
   void Fields(V& v) {
     v("finger", finger, v.Finger());

@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "core/gait/may_not_leave.h"
+
 namespace regrasp {
 namespace {
 
@@ -43,10 +45,10 @@ void GaitReport::Report(const FingerGait& gait, const ActivityContext& context) 
     context.log.Emit(context.tick, kind, of, value, format, args...);
   };
   if (happened.refused_finger >= 0)
-    emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin,
-         "%s may not leave: load margin %.3f N without it, below %.3f N",
-         context.now.hand.fingers[happened.refused_finger].name.c_str(), happened.refused_margin,
-         happened.refused_below);
+    emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin, "%s",
+         MayNotLeave(context.now.hand, happened.refused_finger, happened.refused_margin,
+                     happened.refused_below)
+             .data());
   if (happened.aborted)
     emit(EventKind::kSlip, finger, happened.error_position,
          "regrasp broken off: object %.1f mm, %.0f deg off", happened.error_position * 1e3,

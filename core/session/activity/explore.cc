@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/gait/may_not_leave.h"
+
 namespace regrasp {
 namespace {
 
@@ -70,14 +72,10 @@ ActivityStep ExploreActivity::MakeRoom(const ActivityContext& context) {
     exploration_.Start(request_);
     return {};
   }
-  const char* name = context.now.hand.fingers[finger].name.c_str();
-  context.log.Emit(context.tick, EventKind::kRefused, finger, margin,
-                   "%s may not leave: load margin %.3f N without it", name, margin);
-  char error[128];
-  std::snprintf(error, sizeof(error),
-                "%s may not leave: the load margin without it is %.2f N, below %.2f N", name,
-                margin, context.now.gait.margin_min);
-  return ActivityStep::Failed(error);
+  const double below = context.now.gait.margin_min;
+  context.log.Emit(context.tick, EventKind::kRefused, finger, margin, "%s",
+                   MayNotLeave(context.now.hand, finger, margin, below).data());
+  return ActivityStep::Failed(MayNotLeave(context.now.hand, finger, margin, below, 2).data());
 }
 
 ActivityStep ExploreActivity::Update(const ActivityContext& context) {
@@ -111,11 +109,6 @@ void ExploreActivity::Dropped(const ActivityContext& context) {
   if (!room_.active()) AssessEnd(context);
 }
 
-int ExploreActivity::MaxCycles(const ActivityContext& context) const {
-  return request_.max_cycles > 0 ? request_.max_cycles
-                                 : static_cast<int>(context.now.exploration.max_cycles);
-}
-
 double ExploreActivity::TruePhi(const ActivityContext& context) const {
   context.judge.Look(context.tick, context.world.state(), context.parameters.control);
   return context.judge.Phi(
@@ -136,7 +129,8 @@ void ExploreActivity::Assess(const ActivityContext& context) {
     result.path_length_m += (p_WC - p_path_).norm();
     p_path_ = p_WC;
     context.job.progress =
-        std::min(0.99, static_cast<double>(exploration_.cycles()) / MaxCycles(context));
+        std::min(0.99, static_cast<double>(exploration_.cycles()) /
+                           MaxCycles(request_.max_cycles, context.now.exploration));
   }
   if (!exploration_.slide_ended()) return;
   AssessEnd(context);

@@ -32,7 +32,6 @@ class ExploreActivity : public Activity {
   void Assess(const ActivityContext& context);
   void AssessEnd(const ActivityContext& context);
   double TruePhi(const ActivityContext& context) const;
-  int MaxCycles(const ActivityContext& context) const;
 
   FingerExploration::Request request_;
   FingerGait room_;  // active: the others shift

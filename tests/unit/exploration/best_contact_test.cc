@@ -24,6 +24,16 @@ TEST(BestContact, RemembersWherePhiWasHighestAndNotItsPeaks) {
   EXPECT_FALSE(best.worth_returning(2));
 }
 
+TEST(RelativeGain, IsOfTheSizeWhateverTheSign) {
+  EXPECT_DOUBLE_EQ(RelativeGain(1.5, 1), 0.5);
+  EXPECT_DOUBLE_EQ(RelativeGain(0.5, 2), -0.75);
+  EXPECT_DOUBLE_EQ(RelativeGain(-0.5, -1), 0.5);
+  EXPECT_DOUBLE_EQ(RelativeGain(-3, -2), -0.5);
+  EXPECT_DOUBLE_EQ(RelativeGain(1, -1), 2);
+  EXPECT_TRUE(std::isfinite(RelativeGain(1, 0)));
+  EXPECT_EQ(RelativeGain(1.37, 1.19), 1.37 / 1.19 - 1);  // to the bit
+}
+
 TEST(BestContact, CountsTheTimeSinceItsLastGain) {
   BestContact best;
   best.Start(Vector3d::Zero(), 1);
