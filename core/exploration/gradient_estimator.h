@@ -30,7 +30,6 @@ class SecantEstimator {
 /// and solves in the tangent plane. A circular dither keeps both tangent directions excited.
 class LeastSquaresEstimator {
  public:
-  void Reset() { *this = LeastSquaresEstimator(); }
   /// Adds one sample. `keep` in (0, 1): weight of the past per sample.
   void Add(const Vector3d& p_WC, double phi, double keep);
   /// Gradient in C [1/m], third component 0. `ridge` [m²]: variance of position below which a

@@ -101,7 +101,6 @@ class LandingPlan {
   }
 
  private:
-  static constexpr int kRings = 4;
   static constexpr int kCandidates = 1 + 8 + 12 + 16 + 24;
   static constexpr int kShortlist = 7;
 

@@ -122,12 +122,4 @@ double WrenchHullVolume(std::span<const GraspContact> contacts, double torque_sc
   throw std::runtime_error("wrench hull: rounding defeats every tolerance");
 }
 
-bool ForceClosure(std::span<const GraspContact> contacts, double torque_scale, int edges) {
-  EpsilonSolver solver;
-  solver.Begin(contacts, torque_scale, edges);
-  while (solver.lower_bound() <= kInside && !solver.Step(1)) {
-  }
-  return solver.lower_bound() > kInside;
-}
-
 }  // namespace regrasp

@@ -67,8 +67,4 @@ double WrenchHullVolume(std::span<const GraspContact> contacts, double torque_sc
 inline constexpr std::size_t kMaxHullWrenches =
     400;  ///< bounds memory (300 MB) and time (1 s) of the volume
 
-/// True when the origin is strictly inside the hull of the primitive wrenches (by more than 1e-9).
-/// Stops as soon as that is known; allocates.
-bool ForceClosure(std::span<const GraspContact> contacts, double torque_scale, int edges);
-
 }  // namespace regrasp

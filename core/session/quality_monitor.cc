@@ -34,6 +34,9 @@ StabilityFrame QualityMonitor::stability(const ControlTick& now) const {
   for (std::size_t i = 0; i < kNumFrameMeasures; ++i)
     if (kMeasureTable[i].cost == MeasureCost::kTick)
       shown.values[i] = kMeasureTable[i].compute(input);
+  static_assert(std::ranges::all_of(kMeasureTable, [](const MeasureInfo& m) {
+    return m.cost != MeasureCost::kSpread || m.id == Measure::kEpsilon;
+  }));  // the solver that is spread over ticks is epsilon's
   shown.values[static_cast<std::size_t>(Measure::kEpsilon)] =
       epsilon_known_ ? epsilon_result_ : std::numeric_limits<double>::quiet_NaN();
   shown.load_margin = load_margin_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/hand/finger_reach.h"
 #include "core/quality/stability.h"
 #include "tests/unit/control/held_sphere.h"
@@ -25,14 +27,57 @@ class ObjectiveTest : public ::testing::Test {
   ControlParameters parameters_;
 };
 
-TEST_F(ObjectiveTest, CriteriaAreTheirDefinitions) {
-  const double manipulability = estimate_.fingers[2].manipulability;
-  const double stability = GraspStability(estimate_, kAll, parameters_);
-  EXPECT_GT(manipulability, 0);
-  EXPECT_GT(stability, 0);
-  EXPECT_EQ(Value(Criterion::kManipulability).phi, manipulability);
-  EXPECT_EQ(Value(Criterion::kStability).phi, stability);
-  EXPECT_DOUBLE_EQ(Value(Criterion::kCombined, 2.5).phi, manipulability + 2.5 * stability);
+/// Four contacts at the corners of a regular tetrahedron about the object, and what is sensed of
+/// them: G Gᵀ is 4 I of forces and 4 I - (sum of n nᵀ = 4/3 I) = 8/3 I of torques, so that the
+/// smallest singular value is √(8/3).
+Estimate OnTetrahedron(Estimate estimate) {
+  constexpr double kRadius = 0.03;
+  const Vector3d corners[] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  for (int i = 0; i < 4; ++i) {
+    estimate.fingers[i].normal_W = corners[i].normalized();
+    estimate.fingers[i].p_WC = estimate.p_WO + kRadius * corners[i].normalized();
+  }
+  estimate.object_scale = kRadius;
+  estimate.fingers[2].manipulability = 0.7;
+  return estimate;
+}
+
+/// phi by hand, with the weights of the test below.
+double ByHand(Criterion criterion, bool stable_enough) {
+  const double stability = std::sqrt(8.0 / 3);
+  switch (criterion) {
+    case Criterion::kManipulability:
+      return 0.7;
+    case Criterion::kStability:
+      return stability;
+    case Criterion::kSwitched:
+      return stable_enough ? 0.7 : stability;
+    case Criterion::kCombined:
+      return 0.7 + 2.5 * stability;
+    case Criterion::kReserve:  // without an axis of the turn the reserve is the most, 2
+      return 2 + 0.3 * 0.7 - 2 * (0.5 - 0.4);
+  }
+  return -1;
+}
+
+TEST_F(ObjectiveTest, EveryCriterionIsItsDefinition) {
+  const Estimate estimate = OnTetrahedron(estimate_);
+  ExplorationParameters exploration;
+  exploration.stability_weight = 2.5;
+  exploration.reserve_manipulability = 0.3;
+  exploration.reserve_margin_wanted = 0.5;
+  exploration.reserve_margin_cost = 2;
+  for (const CriterionInfo& row : kCriterionTable)
+    for (const bool stable_enough : {false, true}) {
+      parameters_.stability_threshold = stable_enough ? 1.6 : 1.7;
+      const ObjectiveValue value =
+          Objective(hand_, {row.id, 2, FingerSet::First(4), Vector3d::Zero(), 0.4}, estimate,
+                    parameters_, exploration, false);
+      EXPECT_NEAR(value.phi, ByHand(row.id, stable_enough), 1e-6) << row.name;
+      const bool on_stability =
+          row.phi_of == PhiOf::kStability || (row.phi_of == PhiOf::kEither && !stable_enough);
+      EXPECT_EQ(value.on_stability, on_stability) << row.name;
+    }
 }
 
 TEST_F(ObjectiveTest, StabilityMeasureIsSelectable) {

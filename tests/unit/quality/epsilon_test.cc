@@ -81,28 +81,9 @@ TEST(Epsilon, SurvivesNearlyDegenerateGrasps) {
   }
 }
 
-// Frictionless contacts on a cube, two per face, whose wrenches are the corners of three squares
-// (f_x, t_y), (f_y, t_z), (f_z, t_x) = (+-1, +-1). Their hull is the free sum of the squares: its
-// polar is the product of three diamonds, so epsilon = 1 / sqrt(3); its volume is 4^3 * 2! 2! 2! /
-// 6!.
-Contacts Cube() {
-  Contacts contacts;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {1.0, -1.0}) {
-      for (const double offset : {1.0, -1.0}) {
-        const Vector3d normal = -side * Vector3d::Unit(axis);
-        const Vector3d lever = offset * Vector3d::Unit((axis + 2) % 3);
-        contacts.push_back({kScale * (side * Vector3d::Unit(axis) + lever), normal, 0.0});
-      }
-    }
-  }
-  return contacts;
-}
-
 TEST(Epsilon, OfTheFrictionlessCubeIsClosedForm) {
-  EXPECT_NEAR(EpsilonSolver().Compute(Cube(), kScale, 3), 1 / std::sqrt(3), 1e-12);
-  EXPECT_NEAR(WrenchHullVolume(Cube(), kScale, 3), 64.0 * 8 / 720, 1e-12);
-  EXPECT_TRUE(ForceClosure(Cube(), kScale, 3));
+  EXPECT_NEAR(EpsilonSolver().Compute(Cube(kScale), kScale, 3), 1 / std::sqrt(3), 1e-12);
+  EXPECT_NEAR(WrenchHullVolume(Cube(kScale), kScale, 3), 64.0 * 8 / 720, 1e-12);
 }
 
 TEST(Epsilon, IsZeroWithoutForceClosure) {
@@ -114,20 +95,26 @@ TEST(Epsilon, IsZeroWithoutForceClosure) {
       OnSphere({{0, 0, -1}, {1, 0, -1}, {-1, 1, -1}}, kScale, 0.3),           // all from below
       OnSphere({{1, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {-1, 0, 0}}, kScale, 0.8),  // on one line
       Ring(5, kScale, 0.0)};                                                  // no friction
-  for (const Contacts& contacts : grasps) {
-    EXPECT_EQ(solver.Compute(contacts, kScale, 8), 0.0);
-    EXPECT_FALSE(ForceClosure(contacts, kScale, 8));
-  }
+  for (const Contacts& contacts : grasps) EXPECT_EQ(solver.Compute(contacts, kScale, 8), 0.0);
   EXPECT_EQ(WrenchHullVolume(grasps[2], kScale, 8), 0.0);
 }
 
-TEST(Epsilon, IsPositiveExactlyWithForceClosure) {
+TEST(Epsilon, IsPositiveExactlyWhereQhullHasTheOriginInside) {
   EpsilonSolver solver;
   RandomStream random(3, 0);
+  int inside = 0, outside = 0;
   for (int i = 0; i < 200; ++i) {
     const Contacts contacts = Random(random, 3 + i % 2);
-    EXPECT_EQ(ForceClosure(contacts, kScale, 8), solver.Compute(contacts, kScale, 8) > 0);
+    std::vector<Wrench> points;
+    AppendPrimitiveWrenches(contacts, kScale, 8, points);
+    const QhullAnswer qhull = RunQhull(points);
+    if (!qhull.ok) continue;
+    const bool holds = qhull.least_offset > 1e-9;
+    EXPECT_EQ(solver.Compute(contacts, kScale, 8) > 0, holds) << i;
+    ++(holds ? inside : outside);
   }
+  EXPECT_GT(inside, 20);
+  EXPECT_GT(outside, 20);
 }
 
 TEST(Epsilon, DoesNotDependOnTheUnitOfLengthAndGrowsWithContacts) {

@@ -31,6 +31,24 @@ inline Contacts Tetrahedron(double R, double mu) {
   return OnSphere({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, R, mu);
 }
 
+/// Frictionless contacts on a cube, two per face, whose wrenches are the corners of three squares
+/// (f_x, t_y), (f_y, t_z), (f_z, t_x) = (+-1, +-1). Their hull is the free sum of the squares: its
+/// polar is the product of three diamonds, so epsilon = 1 / sqrt(3); its volume is 4^3 * 2! 2! 2! /
+/// 6!. With torques divided by R.
+inline Contacts Cube(double R) {
+  Contacts contacts;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0}) {
+      for (const double offset : {1.0, -1.0}) {
+        const Vector3d normal = -side * Vector3d::Unit(axis);
+        const Vector3d lever = offset * Vector3d::Unit((axis + 2) % 3);
+        contacts.push_back({R * (side * Vector3d::Unit(axis) + lever), normal, 0.0});
+      }
+    }
+  }
+  return contacts;
+}
+
 /// n contacts anywhere on a sphere of 25 mm, normals about 10 degrees off, mu 0.3 ... 0.9. `bias`
 /// moves them to that side.
 inline Contacts Random(RandomStream& random, int n, const Vector3d& bias = Vector3d::Zero()) {
