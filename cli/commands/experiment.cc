@@ -180,8 +180,8 @@ std::vector<Arg> WithoutObject(std::vector<Arg> args) {
   return args;
 }
 
-/// `estimators`: "" for the default of `explore`.
-std::vector<Arg> ExplorationArgs(const std::string& estimators) {
+/// `every_estimator`: all are compared unless some are named.
+std::vector<Arg> ExplorationArgs(bool every_estimator) {
   const ParamSpec& estimator = *FindParam(*FindMethod("explore"), "estimator");
   Arg criterion =
       TextArg("criterion", "--criterion", "NAME", "what is maximised", "manipulability");
@@ -191,7 +191,8 @@ std::vector<Arg> ExplorationArgs(const std::string& estimators) {
           criterion,
           TextArg("estimator", "--estimator", "NAMES",
                   fmt::format("{}, or several with commas", fmt::join(estimator.values, ", ")),
-                  estimators.empty() ? std::string(estimator.default_text) : estimators),
+                  every_estimator ? fmt::format("{}", fmt::join(estimator.values, ","))
+                                  : std::string(estimator.default_text)),
           Number("rays", "--rays", ArgKind::kInteger, "N",
                  "rays of the noise-free map that success is judged by; 0: none", 0, 360, "12")};
 }
@@ -207,7 +208,7 @@ std::vector<CommandSpec> ExperimentCommands() {
   return {
       {"experiment exploration", kGroup,
        "explore with many seeds; how often phi rose, and came near the best within reach", nullptr,
-       With(ExplorationArgs(""), "50", "paper"), Experiment},
+       With(ExplorationArgs(false), "50", "paper"), Experiment},
       {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
        With({TextArg("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
                      "0,0,-1"),
@@ -255,7 +256,7 @@ std::vector<CommandSpec> ExperimentCommands() {
        Experiment},
       {"experiment noise-sweep", kGroup,
        "explorations at every noise preset, the estimators side by side", nullptr,
-       With(ExplorationArgs("all"), "20", "off,fine,paper,coarse,taxel"), Experiment},
+       With(ExplorationArgs(true), "20", "off,fine,paper,coarse,taxel"), Experiment},
       {"experiment paper",
        kGroup,
        "everything the paper shows, measured again: figures, trials and a page",
