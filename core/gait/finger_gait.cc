@@ -91,27 +91,24 @@ StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) c
 
 Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const ControlTick& tick) const {
-  const GaitParameters& parameters = tick.gait;
   if (planned(tick) && landing_[finger].found) {
     const Landing& landing = landing_[finger];
     const Vector3d& p_WO = tick.estimate.p_WO;
     const Quaterniond& q_WO = tick.estimate.q_WO;
-    const Vector3d p_WC = p_WO + q_WO * landing.p_OC;
-    return {p_WC,
+    return {p_WO + q_WO * landing.p_OC,
             p_WO + q_WO * landing.p_OF,
             q_WO * landing.normal_O,
             std::nullopt,
             p_WO,
             along_.speed() * sign_ * request_.axis_W};
   }
-  const StanceContact home = HomeOf(finger, parameters);
-  std::optional<Vector3d> recall;
-  if (parameters.mode == GaitMode::kExploring) {
-    const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
-    recall = Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
-  }
+  const StanceContact home = HomeOf(finger, tick.gait);
   const Vector3d& centre = wrench.p_ref();
-  if (recall) *recall += centre;
+  std::optional<Vector3d> recall;
+  if (tick.gait.mode == GaitMode::kExploring) {
+    const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
+    recall = centre + Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
+  }
   return {centre + home.p_OC, centre + home.p_OF, home.normal_W, recall, centre, Vector3d::Zero()};
 }
 
