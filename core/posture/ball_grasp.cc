@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/hand/segment_distance.h"
 #include "core/quality/load_margin.h"
 #include "core/quality/manipulability.h"
 
@@ -45,10 +46,8 @@ double PointToSegment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
 
 double SegmentDistance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
                        const Vector3d& b1) {
-  double best = 1e9;  // sampled: 0.3 mm is plenty here
-  for (int i = 0; i <= 12; ++i)
-    best = std::min(best, PointToSegment(a0 + (a1 - a0) * (i / 12.0), b0, b1));
-  return best;
+  const SegmentPoints closest = ClosestOfSegments(a0, a1, b0, b1);
+  return (closest.on_two - closest.on_one).norm();
 }
 
 double BallGap(const Shape& shape, const Isometry3d& X_WL, const Vector3d& p_WO, double radius) {
