@@ -86,7 +86,7 @@ StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) c
       request_.make_room_for >= 0 ? 0.0 : parameters.lead * parameters.step_rad + lead_[finger];
   const Quaterniond ahead = FromRotationVector(-sign_ * lead * request_.axis_W);
   const StanceContact& first = home_.stance[finger];
-  return {ahead * first.p_OC, ahead * first.p_OF, ahead * first.normal_W};
+  return {ahead * first.p_OC_W, ahead * first.p_OF_W, ahead * first.normal_W};
 }
 
 Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
@@ -107,9 +107,10 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
   std::optional<Vector3d> recall;
   if (tick.gait.mode == GaitMode::kExploring) {
     const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
-    recall = centre + Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC;
+    recall = centre + Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC_W;
   }
-  return {centre + home.p_OC, centre + home.p_OF, home.normal_W, recall, centre, Vector3d::Zero()};
+  return {centre + home.p_OC_W, centre + home.p_OF_W, home.normal_W, recall, centre,
+          Vector3d::Zero()};
 }
 
 bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench, double position,

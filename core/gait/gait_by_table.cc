@@ -26,7 +26,8 @@ void FingerGait::SearchStance(const ControlTick& tick) {
 }
 
 void FingerGait::Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench) {
-  const Vector3d shift = tick.finger(finger).p_WC - wrench.p_ref() - HomeOf(finger, tick.gait).p_OC;
+  const Vector3d shift =
+      tick.finger(finger).p_WC - wrench.p_ref() - HomeOf(finger, tick.gait).p_OC_W;
   Vector3d& found = found_[finger];
   found += tick.gait.found_share * (shift - found);
   found = LimitNorm(found, tick.gait.disc_inside * tick.gait.disc_radius);

@@ -132,7 +132,7 @@ LandingPlan::Candidate LandingPlan::Rate(const ControlTick& tick, int index) con
   const int finger = request_.finger;
   const Matrix3d R_home = RotationFromZ(request_.home.normal_W);
   const Eigen::Vector2d offset = request_.reach * RingOffset(index);
-  const Vector3d aim_W = request_.home.p_OC + R_home.leftCols<2>() * offset;
+  const Vector3d aim_W = request_.home.p_OC_W + R_home.leftCols<2>() * offset;
   const Quaterniond q_OW = estimate.q_WO.conjugate();
   const SurfacePoint surface = tick.felt.At(q_OW * aim_W);
 
@@ -213,7 +213,7 @@ LandingPlan::Candidate LandingPlan::Stay(const ControlTick& tick) const {
       CheapScore(tick, now, &landing) -
       LinkPenalty(tick, request_.finger, now, landing, TurnAhead(tick, request_, landing.reserve));
   const double far2 =
-      TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC, request_.home.normal_W)
+      TangentPart(f.p_WC - tick.estimate.p_WO - request_.home.p_OC_W, request_.home.normal_W)
           .squaredNorm();
   landing.score -= tick.gait.landing_far_cost * far2 / Square(tick.gait.landing_far);
   return candidate;

@@ -99,7 +99,7 @@ LocalManipulation::End LocalManipulation::FindEnd(const ControlTick& tick, const
     }
     if (f.manipulability < tick.gait.min_manipulability * home.manipulability[i])
       return End::kManipulability;
-    const Vector3d excursion = f.p_WC - home.p_WO - home.stance[i].p_OC;
+    const Vector3d excursion = f.p_WC - home.p_WO - home.stance[i].p_OC_W;
     if (excursion.norm() > tick.gait.max_excursion && excursion.dot(v) > 0) return End::kExcursion;
   }
   end_finger_ = -1;

@@ -3,10 +3,10 @@
 namespace regrasp {
 
 StanceContact Shifted(const StanceContact& contact, const Vector3d& step) {
-  const double radius = contact.p_OC.norm();
-  const Vector3d centre = contact.p_OC - radius * contact.normal_W;
+  const double radius = contact.p_OC_W.norm();
+  const Vector3d centre = contact.p_OC_W - radius * contact.normal_W;
   const Quaterniond turn = FromRotationVector(contact.normal_W.cross(step) / radius);
-  return {centre + turn * (contact.p_OC - centre), centre + turn * (contact.p_OF - centre),
+  return {centre + turn * (contact.p_OC_W - centre), centre + turn * (contact.p_OF_W - centre),
           turn * contact.normal_W};
 }
 

@@ -11,15 +11,15 @@
 namespace regrasp {
 
 /// One contact of a stance, from the object's reference position and in W axes: unlike those of a
-/// Landing (landing_plan.h), which are in O, p_OC and p_OF do not turn with the object.
+/// Landing (landing_plan.h), which are in O, they do not turn with the object.
 struct StanceContact {
-  Vector3d p_OC = Vector3d::Zero();       ///< contact [m]
-  Vector3d p_OF = Vector3d::Zero();       ///< fingertip centre [m]
+  Vector3d p_OC_W = Vector3d::Zero();     ///< contact [m]
+  Vector3d p_OF_W = Vector3d::Zero();     ///< fingertip centre [m]
   Vector3d normal_W = Vector3d::UnitZ();  ///< outward
   template <typename V>
   void Fields(V& v) {
-    v("p_OC", p_OC);
-    v("p_OF", p_OF);
+    v("p_OC", p_OC_W);
+    v("p_OF", p_OF_W);
     v("normal_W", normal_W);
   }
 };

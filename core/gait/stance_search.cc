@@ -28,11 +28,12 @@ void StanceSearch::Step(const Vector3d& weight, double mu, double torque_scale, 
       if (static_cast<int>(i) == without_) continue;
       const Vector3d step = TangentPart(step_size * random_.Normal3(), trial[i].normal_W);
       const StanceContact moved = Shifted(trial[i], step);
-      if ((moved.p_OC - first_[i].p_OC).norm() <= max_shift_) trial[i] = moved;
+      if ((moved.p_OC_W - first_[i].p_OC_W).norm() <= max_shift_) trial[i] = moved;
     }
   }
   Grasp grasp;
-  for (int i : fingers_.without(without_)) grasp.push_back({trial[i].p_OC, -trial[i].normal_W, mu});
+  for (int i : fingers_.without(without_))
+    grasp.push_back({trial[i].p_OC_W, -trial[i].normal_W, mu});
   const double margin = LoadMargin({grasp.data(), grasp.size()}, weight, torque_scale, max_force);
   ++evaluations_;
   if (margin <= margin_) return;

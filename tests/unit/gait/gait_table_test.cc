@@ -134,11 +134,11 @@ TEST(Stance, ShiftedContactStaysOnTheBall) {
   const Vector3d step = 0.006 * n.cross(Vector3d::UnitX()).normalized();
   const StanceContact moved = Shifted(contact, step);
   // Exact up to rounding: on a ball the surface model is the surface.
-  EXPECT_NEAR(moved.p_OC.norm(), radius, 1e-12);
-  EXPECT_LT((moved.normal_W - moved.p_OC.normalized()).norm(), 1e-12);
-  EXPECT_NEAR((moved.p_OF - moved.p_OC).norm(), tip, 1e-12);
+  EXPECT_NEAR(moved.p_OC_W.norm(), radius, 1e-12);
+  EXPECT_LT((moved.normal_W - moved.p_OC_W.normalized()).norm(), 1e-12);
+  EXPECT_NEAR((moved.p_OF_W - moved.p_OC_W).norm(), tip, 1e-12);
   // An arc of 6 mm on 25 mm has a chord of 2 * 25 * sin(6 / 50) mm.
-  EXPECT_NEAR((moved.p_OC - contact.p_OC).norm(), 2 * radius * std::sin(0.006 / (2 * radius)),
+  EXPECT_NEAR((moved.p_OC_W - contact.p_OC_W).norm(), 2 * radius * std::sin(0.006 / (2 * radius)),
               1e-12);
 }
 
@@ -159,8 +159,8 @@ TEST(Stance, SearchRaisesTheMarginWithinItsBound) {
   for (int k = 0; k < 200; ++k) search.Step(weight, 0.5, 0.025, 4.0, GaitParameters().search_step);
   EXPECT_GT(search.margin(), first);
   for (std::size_t i = 0; i < stance.size(); ++i)
-    EXPECT_LE((search.stance()[i].p_OC - stance[i].p_OC).norm(), 0.006 + 1e-12);
-  EXPECT_EQ(search.stance()[4].p_OC, stance[4].p_OC);
+    EXPECT_LE((search.stance()[i].p_OC_W - stance[i].p_OC_W).norm(), 0.006 + 1e-12);
+  EXPECT_EQ(search.stance()[4].p_OC_W, stance[4].p_OC_W);
 }
 
 }  // namespace

@@ -85,7 +85,8 @@ TEST_F(LandingPlanTest, LandsOnTheFeltSurfaceWithinReachOfHome) {
     const Landing& landing = plan.landing();
     ASSERT_TRUE(landing.found);
     EXPECT_NEAR(landing.p_OC.norm(), kRadius, 1e-4);
-    EXPECT_LT((landing.p_OC - estimate.q_WO.conjugate() * plan.request().home.p_OC).norm(), 0.0105);
+    EXPECT_LT((landing.p_OC - estimate.q_WO.conjugate() * plan.request().home.p_OC_W).norm(),
+              0.0105);
     EXPECT_GT(landing.normal_O.dot(landing.p_OC.normalized()), std::cos(0.02));
     EXPECT_GT(landing.reserve, 0.1);
   }
@@ -98,7 +99,7 @@ TEST_F(LandingPlanTest, KeepsOffGroundThatNobodyHasFelt) {
   Plan(&plan);
   const Vector3d free = plan.landing().p_OC;
   // Nothing felt beyond home on the side to which the free plan went.
-  const Vector3d home = Home(ring).home.p_OC;
+  const Vector3d home = Home(ring).home.p_OC_W;
   const Vector3d side =
       (free - home - (free - home).dot(home) / home.squaredNorm() * home).normalized();
   felt.Reset();
