@@ -7,8 +7,8 @@
 namespace regrasp::cli {
 
 /// `socket` of the usual configuration file (core/protocol/config_path.h), or "". Throws
-/// CliError(kUsage) with file and line when the file is not TOML or
-/// `socket` no absolute path, kPermission when it cannot be
+/// CliError(kUsage) with file and line when the file is not TOML, has
+/// an unknown key or a `socket` that is no absolute path, kPermission when it cannot be
 /// read.
 std::string ConfiguredSocket();
 

@@ -69,6 +69,9 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
       if (error.code == kUsage && error.hint.empty()) {
         error.hint = "regrasp help " + invocation.command->words;
       }
+      const std::string gone = "the current directory has gone", cause = error.what();
+      if (error.code == kIo && cause.find(gone) == std::string::npos && DirectoryHasGone())
+        throw error.With(cause + "; " + gone, "cd, then the same again");
       throw ForPeople(error, invocation.command->words);
     }
     context.out().Flush();

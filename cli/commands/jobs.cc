@@ -1,32 +1,18 @@
 #include "cli/commands/jobs.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <numbers>
 
 #include "cli/help/wrap.h"
+#include "cli/print/progress_line.h"
 
 namespace regrasp::cli {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-/// One line on stderr that is rewritten; nothing when stderr is no terminal.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool on) : on_(on) {}
-  ~ProgressLine() { Show(""); }
-  bool on() const { return on_; }
-  void Show(const std::string& text) {
-    if (on_) std::fputs(("\r\x1b[K" + text).c_str(), stderr);
-  }
-
- private:
-  bool on_;
-};
 
 std::string JobTitle(const Json& record) {
   std::string title = Plain(At(record, "method"));
@@ -173,8 +159,7 @@ void PrintJob(Output& out, const Json& record) {
 Json WaitForJob(Context& context, std::int64_t id, Standstill standstill) {
   constexpr double kFirstSlice_s = 0.25;
   const Interruptible interruptible;
-  ProgressLine line(context.out().human() && !context.options().quiet &&
-                    ::isatty(STDERR_FILENO) == 1);
+  ProgressLine line(context.out().human() && !context.options().quiet);
   const auto deadline = Deadline(context.options().timeout_s.value_or(0));
   const std::string how = fmt::format("regrasp job wait {}", id);
   try {

@@ -14,8 +14,8 @@
 #include "cli/commands/run_files.h"
 #include "cli/grammar/units.h"
 #include "cli/print/terminal_graphics.h"
-#include "core/files/draft.h"
 #include "core/files/lower_suffix.h"
+#include "core/files/output_file.h"
 #include "core/files/read_file.h"
 #include "core/protocol/plot_table.h"
 
@@ -30,8 +30,11 @@ void Copy(const fs::path& picture, const fs::path& target, const std::string& ne
   std::error_code ignored;
   if (fs::equivalent(picture, target, ignored)) return;
   try {
+    CheckWritable(target, Draft::Existing::kReplace);
     RefuseMissingDirectory(target);
     WriteWhole(target, ReadRegularFile(picture, kMaxPicture), Draft::Existing::kReplace);
+  } catch (const WriteError& e) {
+    throw CliError(kIo, e.what(), next);
   } catch (const std::exception& e) {
     throw CliError(
         kIo, fmt::format("cannot copy {} to {}: {}", picture.string(), target.string(), e.what()),

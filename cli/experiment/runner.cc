@@ -1,7 +1,6 @@
 #include "cli/experiment/runner.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@
 
 #include "cli/experiment/identity.h"
 #include "cli/experiment/trial.h"
+#include "cli/print/progress_line.h"
 
 namespace regrasp::cli {
 namespace {
@@ -44,29 +44,26 @@ std::string Describe(const Output& out, const Json& row) {
   return text;
 }
 
-/// On stderr: one line that is rewritten on a terminal, else a line for each unit.
+/// On stderr: one line that is written over on a terminal, else a line for each unit.
 class Progress {
  public:
   Progress(Context& context, std::size_t done, std::size_t total)
       : out_(context.out()),
         quiet_(context.options().quiet),
-        terminal_(::isatty(STDERR_FILENO) == 1),
+        line_(!quiet_),
         kept_(done),
         done_(done),
         total_(total) {
     if (quiet_) return;
-    if (terminal_)
+    if (line_.on())
       Bar("");
     else if (kept_ > 0)
       fmt::print(stderr, "{} of {} are there already\n", kept_, total_);
   }
-  ~Progress() {
-    if (!quiet_ && terminal_) std::fputs("\r\x1b[K", stderr);
-  }
   void Finished(const std::vector<Json>& rows) {
     ++done_;
     if (quiet_) return;
-    if (terminal_) return Bar(Describe(out_, rows.back()));
+    if (line_.on()) return Bar(Describe(out_, rows.back()));
     for (const Json& row : rows)
       fmt::print(stderr, "{:>{}}/{} {}\n", done_, std::to_string(total_).size(), total_,
                  Describe(out_, row));
@@ -74,20 +71,20 @@ class Progress {
 
  private:
   void Bar(const std::string& what) {
-    if (quiet_) return;
     const double share = total_ > 0 ? static_cast<double>(done_) / static_cast<double>(total_) : 1;
-    std::string text = fmt::format("\r\x1b[K{} {}/{}", out_.Bar(share, 24), done_, total_);
+    std::string text = fmt::format("{} {}/{}", out_.Bar(share, 24), done_, total_);
     if (done_ > kept_ && done_ < total_) {
       const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
       const auto left = static_cast<long>(std::lround(elapsed / static_cast<double>(done_ - kept_) *
                                                       static_cast<double>(total_ - done_)));
       text += fmt::format("  {}:{:02} left", left / 60, left % 60);
     }
-    std::fputs((text + "  " + what.substr(0, 40)).c_str(), stderr);
+    line_.Show(text + "  " + what);
   }
 
   Output& out_;
-  bool quiet_, terminal_;
+  bool quiet_;
+  ProgressLine line_;
   std::size_t kept_, done_, total_;
   Clock::time_point begin_ = Clock::now();
 };

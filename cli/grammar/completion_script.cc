@@ -61,8 +61,14 @@ function __regrasp_complete
     if string match -q -- ':files*' "$line"
       set -l suffix (string escape --style=regex -- (string sub -s 7 -- "$line"))
       # A name that begins with - would be an option.
-      __fish_complete_path "$current" | string match -r -- '^[^\t]*(?:/|'"$suffix"')(?:\t.*)?$' |
-        string replace -r -- '^-' './-'
+      set -l place "$current"
+      set -l added '^$'
+      if not string match -q -- '*/*' "$current"
+        set place "./$current"
+        set added '^\./(?!-)'
+      end
+      __fish_complete_path "$place" | string match -r -- '^[^\t]*(?:/|'"$suffix"')(?:\t.*)?$' |
+        string replace -r -- "$added" ''
     else
       echo $line
     end

@@ -4,19 +4,19 @@
 
 #include <string>
 
+#include "cli/print/progress_line.h"
+
 namespace regrasp::hand {
 
 /// Progress on a terminal's last line, or a line per fifth elsewhere.
 class Progress {
  public:
   explicit Progress(bool quiet);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
   void Show(const std::string& what, double done);
 
  private:
-  bool quiet_, terminal_;
+  bool quiet_;
+  cli::ProgressLine line_;
   int percent_ = -1;
   std::string what_;
 };

@@ -105,8 +105,15 @@ constexpr const char* kEnd = R"(# ENVIRONMENT
 _$XDG\_RUNTIME\_DIR/regrasp/regrasp.sock_, _/run/regrasp/regrasp.sock_, _/tmp/regrasp-UID/regrasp.sock_
 	The socket: the first that is there.
 
-_~/.config/regrasp/regraspd.toml_, _/etc/regrasp/regraspd.toml_
-	The configuration, see *regraspd*(8).
+_$XDG\_CONFIG\_HOME/regrasp/regraspd.toml_, _/etc/regrasp/regraspd.toml_
+	The configuration, see *regraspd*(8). *XDG\_CONFIG\_HOME* is _~/.config_ where it is not set.
+
+_$XDG\_STATE\_HOME/regrasp_
+	What the daemon writes (_/tmp/regrasp-UID/output_ for users without a home), and the shell's
+	_history_. *XDG\_STATE\_HOME* is _~/.local/state_ where it is not set.
+
+_$TMPDIR/regrasp-private-XXXXXX_
+	Of private daemons, while they run; _/tmp_ where *TMPDIR* is not set or too long for a socket.
 
 # SEE ALSO
 

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <csignal>
 
+#include "cli/print/progress_line.h"
 #include "cli/run/plot_run.h"
 #include "cli/run/program.h"
 #include "cli/run/video.h"
@@ -26,28 +27,22 @@ double SecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// One line that is written over, for a person who waits; nothing elsewhere.
+/// How far a film is.
 class Progress {
  public:
-  explicit Progress(bool on) : on_(on && ::isatty(STDERR_FILENO) != 0) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
-  }
+  explicit Progress(bool wanted) : line_(wanted) {}
   bool operator()(int done, int total) {
     const auto now = Clock::now();
-    if (on_ && now - told_ > std::chrono::milliseconds(200) && done > 0) {
-      fmt::print(stderr, "\r{} of {} pictures, {:.0f} s left\x1b[K", done, total,
-                 SecondsSince(begin_) * (total - done) / done);
-      std::fflush(stderr);
+    if (line_.on() && now - told_ > std::chrono::milliseconds(200) && done > 0) {
+      line_.Show(fmt::format("{} of {} pictures, {:.0f} s left", done, total,
+                             SecondsSince(begin_) * (total - done) / done));
       told_ = now;
-      shown_ = true;
     }
     return signal_seen == 0;
   }
 
  private:
-  const bool on_;
-  bool shown_ = false;
+  cli::ProgressLine line_;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point told_;
 };

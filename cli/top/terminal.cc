@@ -78,6 +78,12 @@ FullScreen::FullScreen(bool color) : state_(nullptr) {
     throw CliError(kUsage, "the terminal type in $TERM is unknown here",
                    "TERM=xterm regrasp top, or regrasp status");
   }
+  if (::tigetstr("cup") == nullptr) {
+    ::endwin();
+    Free();
+    throw CliError(kUsage, "the terminal in $TERM cannot place the cursor: no full screen",
+                   "regrasp status, or regrasp watch status");
+  }
   ::cbreak();
   ::noecho();
   ::nonl();

@@ -8,6 +8,7 @@
 
 #include "core/common/limit_text.h"
 #include "core/common/nearest_name.h"
+#include "core/protocol/config_path.h"
 #include "core/protocol/methods.h"
 #include "core/protocol/start_words.h"
 #include "core/sensing/noise.h"
@@ -99,6 +100,8 @@ constexpr std::array kKeys = {
     TextKey<&C::stepper>("stepper", "NAME",
                          "fast, exact (slow reference), round (fast, friction cone), or auto"),
 };
+
+static_assert(std::ranges::equal(kKeys, kConfigKeyNames, {}, &ConfigKey::name));
 
 void CheckWord(const std::string& where, std::string_view key, const std::string& value,
                const std::vector<std::string_view>& allowed) {

@@ -214,11 +214,18 @@ _$XDG\_RUNTIME\_DIR/regrasp/regrasp.sock_, _/run/regrasp/regrasp.sock_, _/tmp/re
 	The socket: the first place that can be used. Mode 0600 in a directory of mode 0700; a stale one is
 	taken over, anything that is not a socket is left alone.
 
-_~/.local/state/regrasp_
-	Pictures and other results.
+_$XDG\_CONFIG\_HOME/regrasp/regraspd.toml_, _/etc/regrasp/regraspd.toml_
+	The configuration: the first that is there. *XDG\_CONFIG\_HOME* is _~/.config_ where it is not set.
+
+_$XDG\_STATE\_HOME/regrasp_, else _/tmp/regrasp-UID/output_
+	Pictures and other results, unless *output\_dir* says where. *XDG\_STATE\_HOME* is _~/.local/state_
+	where it is not set; _/tmp_ is for users without a home.
 
 _/usr/share/regrasp/models_
 	Hands and objects.
+
+A variable above that is no absolute path counts as not set. In the configuration *socket*,
+*output\_dir* and *models\_dir* are absolute, or begin with _~/_.
 
 # EXIT STATUS
 

@@ -17,7 +17,7 @@ def bash(words):
 def zsh(words):
     """The same; `_describe` and `_files` of zsh's completion system need an editor, so they are replaced by ones that print."""
     quoted = " ".join(f"'{word}'" for word in words)
-    return ("compdef() { : }; _files() { print :files }; "
+    return ('compdef() { : }; _files() { print -l :files "$@" }; compadd() { print -l -- $1 ${(P)2} }; '
             "_describe() { local name=$3; print -l -- ${${(P)name}%%:*} }; "
             f'eval "$(regrasp completion zsh)"; words=({quoted}); CURRENT={len(words)}; _regrasp')
 
@@ -47,6 +47,16 @@ class Shells(Case):
         for shell in SHELLS:
             with self.subTest(shell):
                 self.assertIn(":files" if shell == "zsh" else "grasp.json", self.ask(shell, "evaluate", "gra"))
+
+    def test_runs_are_run_files_and_directories(self):
+        for name in ("a.mcap", "-b.mcap", "notes.txt"):
+            (self.dir / name).write_text("")
+        (self.dir / "folder").mkdir()
+        wanted = {"bash": ["./-b.mcap", "a.mcap", "folder"], "zsh": ["-a", "./-b.mcap", ":files", "-g", "*.mcap"],
+                  "fish": ["a.mcap", "folder/"]}  # which hides what begins with a point until it is typed
+        for shell in SHELLS:
+            with self.subTest(shell):
+                self.assertEqual(sorted(self.ask(shell, "replay", "")), sorted(wanted[shell]))
 
 
 class Names(DaemonCase):
