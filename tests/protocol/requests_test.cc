@@ -264,6 +264,22 @@ TEST_F(Requests, ResetActsAtOnceAndKeepsParametersAndNoise) {
   EXPECT_EQ(client->Result("status")["object"], "sphere_45mm");
 }
 
+TEST_F(Requests, ResetWarnsOfAnOverlapWhereGraspRefuses) {
+  client->Result("param.set", {{"name", "start.object_sigma_m"}, {"value", 0.015}});
+  Step(1);
+  int refused = 0;
+  for (int seed = 1; seed <= 12; ++seed) {
+    const Json reset = client->Result("reset", {{"seed", seed}});
+    const bool warned = !reset["warnings"].empty();
+    EXPECT_EQ(client->Result("status")["warnings"], reset["warnings"]);
+    const Json grasp = client->Ask("grasp");
+    EXPECT_EQ(grasp.contains("error"), warned) << seed << grasp.dump() << reset.dump();
+    refused += warned;
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_LT(refused, 12);
+}
+
 TEST_F(Requests, ShutdownAnswersThenClosesAndRemovesTheSocket) {
   EXPECT_EQ(client->Result("shutdown")["stopping"], true);
   EXPECT_TRUE(client->ReachesEnd());

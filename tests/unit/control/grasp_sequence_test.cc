@@ -26,13 +26,14 @@ class GraspSequenceTest : public ::testing::Test {
     Start(estimator.Update(reading, parameters_));
     double progress = 0;
     for (ticks_ = 0; ticks_ < max_ticks; ++ticks_) {
+      if (!sequence_.needs_stand_in()) reading.p_WO += drift_ * kDt;
       const Estimate& e = estimator.Update(reading, parameters_);
       sequence_.Update(TickOf(e), &controller_, &tasks_);
       EXPECT_GE(sequence_.progress(), progress);  // never goes back
       progress = sequence_.progress();
       held_alone_ += !sequence_.needs_stand_in();
       EXPECT_TRUE(controller_.Update(e, tasks_, {}, gravity_, parameters_).allFinite());
-      if (sequence_.phase() == Phase::kDone || sequence_.phase() == Phase::kFailed) return true;
+      if (sequence_.phase() >= Phase::kDone) return true;
     }
     return false;
   }
@@ -48,7 +49,7 @@ class GraspSequenceTest : public ::testing::Test {
   const LoadedScenario scenario_ = ShadowHand();
   const HandModel& hand_ = scenario_.hand;
   const Vector3d gravity_ = GraspGravity();
-  const ControlParameters parameters_;
+  ControlParameters parameters_;
   const ExplorationParameters exploration_;
   const GaitParameters gait_;
   const LoadMargins margins_;
@@ -57,6 +58,7 @@ class GraspSequenceTest : public ::testing::Test {
   HybridController controller_{hand_, kDt};
   FingerTasks tasks_;
   int ticks_ = 0, held_alone_ = 0;
+  Vector3d drift_ = Vector3d::Zero();  // of the object, once it is left alone [m/s]
 };
 
 TEST_F(GraspSequenceTest, LetsGoOfTheObjectLongBeforeItIsDone) {
@@ -82,6 +84,49 @@ TEST_F(GraspSequenceTest, ThreeFingersAreEnoughTwoAreNot) {
   EXPECT_EQ(sequence_.phase(), Phase::kFailed);
   EXPECT_TRUE(sequence_.needs_stand_in());
   EXPECT_EQ(held_alone_, 0);  // the object was never left alone
+}
+
+TEST_F(GraspSequenceTest, TheClosedPostureFollowsTheObjectToWhereItIsSensed) {
+  const Vector3d moved(0.004, -0.003, 0.005);
+  SensorReading reading = TouchingReading(hand_, scenario_.scenario.q_preshape, 0);
+  for (FingertipReading& r : reading.fingertips) r.in_contact = false;
+  reading.p_WO = scenario_.scenario.X_WO.translation() + moved;
+  StateEstimator estimator(hand_, kDt);
+  const Estimate& e = estimator.Update(reading, UnfilteredParameters());
+  KinematicsData closed, followed;
+  ForwardKinematics(hand_, scenario_.scenario.q_closed, &closed);
+  for (const double share : {0.0, 0.5, 1.0}) {
+    parameters_.follow_object = share;
+    Start(e);
+    JointVector target = reading.q;
+    for (int tick = 0; tick < 8000; ++tick) {
+      sequence_.Update(TickOf(e), &controller_, &tasks_);
+      if (tasks_[0].mode != FingerMode::kPosture) break;
+      for (int i = 0; i < hand_.num_fingers(); ++i)
+        for (std::size_t k = 0; k < hand_.fingers[i].joints.size(); ++k)
+          target[hand_.fingers[i].joints[k]] = tasks_[i].q_target[static_cast<Eigen::Index>(k)];
+    }
+    ForwardKinematics(hand_, target, &followed);
+    for (int i = 0; i < hand_.num_fingers(); ++i) {
+      const Vector3d way = FingertipCentre(hand_, followed, i) - FingertipCentre(hand_, closed, i);
+      EXPECT_NEAR((way - share * moved).norm(), 0, 3e-4) << hand_.fingers[i].name << share;
+    }
+  }
+}
+
+TEST_F(GraspSequenceTest, AnObjectThatMovesOnIsNotHeld) {
+  // Just slower and just faster than what counts as rest.
+  for (const double speed : {0.9, 1.1}) {
+    sequence_ = GraspSequence();
+    drift_ = speed * parameters_.rest_speed * Vector3d::UnitZ();
+    held_alone_ = 0;
+    ASSERT_TRUE(Run(5, 20000));
+    EXPECT_EQ(sequence_.phase(), speed < 1 ? Phase::kDone : Phase::kRestless);
+    EXPECT_FALSE(sequence_.needs_stand_in());
+    EXPECT_NEAR(sequence_.drift_speed(), drift_.norm(), 1e-5);
+    EXPECT_NEAR(held_alone_ * kDt, parameters_.settle_s + (speed < 1 ? 0 : parameters_.rest_s),
+                3 * kDt);
+  }
 }
 
 TEST_F(GraspSequenceTest, ClosesNoFasterThanItsSpeed) {
