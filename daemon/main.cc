@@ -182,7 +182,7 @@ void RaiseDescriptorLimit(int clients) {
 int Serve(const DaemonConfig& config, const Daemon::ConfigSource& source, bool until_eof) {
   StartLog(config);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);            // a file that may not grow is an error, not the end
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error, not the end
   KeepFromOthers();
   RaiseDescriptorLimit(config.max_clients);
   MemoryReserve::Install(kMemoryReserve);

@@ -185,12 +185,13 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
   options.object_name = input.options.object_name;
   options.changed = input.options.changed;
   input.options = options;
-  try {
-    WriteOutput(out, Draft::Existing::kReplace,
-                [&](const std::string& draft) { DrawPlot(name, input, draft); });
-  } catch (const PictureRefused& refused) {
-    throw Refusal(refused, name, paths.front(), options, last_s);
-  }
+  WriteOutput(out, Draft::Existing::kReplace, [&](const std::string& draft) {
+    try {
+      DrawPlot(name, input, draft);
+    } catch (const PictureRefused& refused) {
+      throw Refusal(refused, name, paths.front(), options, last_s);
+    }
+  });
   std::vector<std::string> notes;
   for (const Pictured& run : runs)
     if (!run.note.empty()) notes.push_back(run.note);

@@ -11,9 +11,8 @@
 namespace regrasp {
 
 /// Directories that are searched for models, in order: `models_dir` if given, $REGRASP_MODELS_DIR,
-/// share/regrasp/models beside the program's bin/, the source tree this was built from, the share/ it was
-/// configured for. Throws ModelError where
-/// one of the first two is no directory.
+/// share/regrasp/models beside the program's bin/, the source tree this was built from, the share/
+/// it was configured for. Throws ModelError where one of the first two is no directory.
 std::vector<std::filesystem::path> ModelSearchPath(const std::string& models_dir = "");
 
 /// The URDF file of a model given by name or as a file. `kind`: "hands" or "objects". Throws

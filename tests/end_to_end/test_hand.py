@@ -248,6 +248,7 @@ class Hand(Case):
         self.expect(0, "-q", "hand", "new", self.write("three.urdf", hand(3)), "-o", self.dir / "three.toml")
         self.addCleanup(self.regrasp, "down")
         self.expect(0, "up", "--hand", self.dir / "three.toml", "--clock", "lockstep", "--speed", "max")
+        self.expect(0, "param", "set", "control.follow_object", "0")  # a grasp by which it stays that far behind
         self.expect(0, "grasp", "--wait")
         for name, value in (("control.rotation_stiffness", 0), ("control.rotation_integral", 0), ("gait.step_rad", 0.7)):
             self.expect(0, "param", "set", name, value)

@@ -323,6 +323,7 @@ TEST(Rotate, SameSeedSameBits) {
 // goes on again. That is no way ahead, and the job ends.
 TEST(Rotate, AGaitThatTurnsTheObjectNoFurtherEnds) {
   SessionConfig config = Config(62);
+  config.parameters.control.follow_object = 0;  // a grasp with which it goes so
   ObjectModel& bar = config.model.object;
   bar.kind = ObjectModel::Kind::kBox;
   bar.half_extents = Vector3d(0.015, 0.015, 0.055);

@@ -19,7 +19,7 @@ TEST(Session, LosingTheObjectFailsTheExploration) {
   ASSERT_TRUE(run.Grasp());
   ASSERT_EQ(run.Explore(1).kind, Kind::kAllowed);
   run.Ticks(1000);
-  run.Set("object.friction", 0.05);
+  run.Set("object.friction", 0.02);
   const std::int64_t job = run.last_job - 1;
   for (int k = 0; k < 10000 && run.session.job_running(); ++k) run.Tick();
   EXPECT_EQ(run.session.state(), SessionState::kDropped);
@@ -101,6 +101,7 @@ TEST(Session, MakesRoomForAnExplorerThatMayNotLeaveYet) {
   };
   for (const Case& c : {Case{0.4, JobState::kDone}, Case{8.0, JobState::kFailed}}) {
     SessionConfig config = ShadowConfig(3);
+    config.parameters.control.follow_object = 0;  // a poor grasp
     config.parameters.gait.margin_min = c.margin_min;
     config.parameters.gait.margin_wanted = 2 * c.margin_min;
     SessionRun run(std::move(config));

@@ -123,7 +123,7 @@ TEST_F(GraspSequenceTest, AnObjectThatMovesOnIsNotHeld) {
     ASSERT_TRUE(Run(5, 20000));
     EXPECT_EQ(sequence_.phase(), speed < 1 ? Phase::kDone : Phase::kRestless);
     EXPECT_FALSE(sequence_.needs_stand_in());
-    EXPECT_NEAR(sequence_.drift_speed(), drift_.norm(), 1e-5);
+    EXPECT_NEAR(sequence_.drift_speed(), drift_.norm(), 0.03 * drift_.norm());
     EXPECT_NEAR(held_alone_ * kDt, parameters_.settle_s + (speed < 1 ? 0 : parameters_.rest_s),
                 3 * kDt);
   }
