@@ -26,10 +26,11 @@ constexpr const char* kPattern = "regrasp-private-XXXXXX";
 /// Whether nobody has a lock on an open file.
 bool Free(int fd) { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; }
 
-/// Whether a directory is this user's and neither the program that made it nor its daemon lives.
-bool Abandoned(const fs::path& path) {
+/// Removes a directory that is this user's where neither the program that made it nor its daemon
+/// lives. Its lock is held until it has gone: somebody who has just made it waits for that.
+void RemoveAbandoned(const fs::path& path) {
   const int directory = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (directory < 0) return false;
+  if (directory < 0) return;
   struct stat info {};
   bool abandoned = ::fstat(directory, &info) == 0 && info.st_uid == ::geteuid() && Free(directory);
   if (abandoned) {
@@ -37,19 +38,19 @@ bool Abandoned(const fs::path& path) {
     abandoned = lock < 0 ? errno == ENOENT : Free(lock);
     if (lock >= 0) ::close(lock);
   }
+  std::error_code ignored;
+  if (abandoned) fs::remove_all(path, ignored);
   ::close(directory);
-  return abandoned;
 }
 
 /// Of Python's clients, too.
 void Sweep(const fs::path& base) {
-  std::error_code error, ignored;
+  std::error_code error;
   fs::directory_iterator entries(base, error);
   for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
     const std::string name = entries->path().filename();
-    if ((name.starts_with("regrasp-private-") || name.starts_with("regrasp-python-")) &&
-        Abandoned(entries->path()))
-      fs::remove_all(entries->path(), ignored);
+    if (name.starts_with("regrasp-private-") || name.starts_with("regrasp-python-"))
+      RemoveAbandoned(entries->path());
   }
 }
 

@@ -108,10 +108,11 @@ Check CheckStepper(const std::string& daemon) {
               told.is_object() ? Plain(At(At(told, "error"), "message")) : FirstLine(finished),
               "regrasp hand check " + hand, false};
     const std::string best = Plain(told["stepper"]);
-    return {"stepper",
-            fmt::format("{} for {}: {}{}", best, Plain(told["hand"]), Plain(told["stepper_reason"]),
-                        set == "auto" || set == best ? "" : "; configured is " + set),
-            ""};
+    return {
+        "stepper",
+        fmt::format("{} for {}: {}{}", best, Plain(told["hand"]), Plain(told["stepper_reason"]),
+                    set.empty() || set == "auto" || set == best ? "" : "; configured is " + set),
+        ""};
   } catch (const CliError& error) {
     return Fault("stepper", error, error.hint);
   }
@@ -134,11 +135,15 @@ Check CheckOutput(const std::string& daemon) {
 }
 
 Check CheckSocket(const std::string& flag) {
-  const SocketPath socket = ConnectPath(flag);
-  const std::string text = fmt::format("{} (from {})", socket.path, socket.source);
-  const std::string cause = DistrustedDirectory(socket.path);
-  if (!cause.empty()) return {"socket", text + ": " + cause, "choose another with -s", false};
-  return {"socket", text, ""};
+  try {
+    const SocketPath socket = ConnectPath(flag);
+    const std::string text = fmt::format("{} (from {})", socket.path, socket.source);
+    const std::string cause = DistrustedDirectory(socket.path);
+    if (!cause.empty()) return {"socket", text + ": " + cause, "choose another with -s", false};
+    return {"socket", text, ""};
+  } catch (const CliError& error) {
+    return Fault("socket", error, NextAfter(error));
+  }
 }
 
 Check CheckDaemon(Context& context) {
@@ -216,7 +221,7 @@ Check CheckPhysics() {
         {"--paused", "--speed", "max", "--seed", "1", "--noise", "paper", "--hand", "shadow"});
     return SelfTest(daemon.socket()).Run();
   } catch (const CliError& error) {
-    return Fault("physics", error, error.hint.starts_with("regrasp doctor") ? "" : error.hint);
+    return Fault("physics", error, NextAfter(error));
   }
 }
 

@@ -114,7 +114,7 @@ bool Running(const std::string& socket, double timeout_s) {
       throw CliError(kTimeout,
                      fmt::format("{} holds {}.lock but does not answer after {:g} s",
                                  HolderOf(socket), socket, timeout_s),
-                     "ps -fp PID, kill PID, then regrasp up");
+                     "kill that process, then regrasp up");
   }
 }
 

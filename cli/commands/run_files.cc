@@ -157,7 +157,7 @@ Arg RunArg() {
 
 std::string FindRun(Context& context, const std::string& name) {
   const std::string with_suffix = name + ".mcap";
-  if (fs::exists(name)) return name;
+  if (fs::exists(name) && !fs::is_directory(name)) return name;
   if (fs::exists(with_suffix)) return with_suffix;
   if (name.find('/') != std::string::npos) return name;
   fs::path directory;

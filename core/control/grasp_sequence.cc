@@ -8,7 +8,8 @@
 namespace regrasp {
 namespace {
 
-constexpr int kSteps = 20;  // of the inverse kinematics
+constexpr int kSteps = 20;              // of the inverse kinematics
+constexpr double kRestWindow_s = 0.35;  // over which the sensed object is averaged
 
 }  // namespace
 
@@ -32,11 +33,19 @@ void GraspSequence::Start(const ControlTick& tick, const JointVector& q_closed,
 
 void GraspSequence::Watch(const ControlTick& tick) {
   drift_.sum += tick.estimate.p_WO;
-  const double window_s = std::max(tick.dt, 0.5 * tick.control.settle_s);
-  if (++drift_.ticks * tick.dt < window_s) return;
+  if (++drift_.ticks * tick.dt < kRestWindow_s) return;
   const Vector3d mean = drift_.sum / drift_.ticks;
-  drift_.speed = (mean - drift_.mean_before).norm() / window_s;
-  drift_ = {Vector3d::Zero(), mean, 0, drift_.speed};
+  drift_.sum.setZero();
+  drift_.ticks = 0;
+  if (drift_.windows++ == 0) {
+    drift_.first = mean;
+  } else {
+    // Against the first one the noise of the pose counts less and less.
+    drift_.speed =
+        std::min((mean - drift_.last).norm(), (mean - drift_.first).norm() / (drift_.windows - 1)) /
+        kRestWindow_s;
+  }
+  drift_.last = mean;
 }
 
 void GraspSequence::Update(const ControlTick& tick, HybridController* controller,
@@ -118,9 +127,10 @@ void GraspSequence::Update(const ControlTick& tick, HybridController* controller
     progress_ = 0.8 + 0.2 * std::min(1.0, time / parameters.settle_s);
     Watch(tick);
     if (time <= parameters.settle_s) return;
-    if (parameters.rest_speed == 0 || drift_.speed <= parameters.rest_speed)
+    const bool known = drift_.windows > 1;
+    if (parameters.rest_speed == 0 || (known && drift_.speed <= parameters.rest_speed))
       phase_ = Phase::kDone;
-    else if (time > parameters.settle_s + parameters.rest_s)
+    else if (known && time > parameters.settle_s + parameters.rest_s)
       phase_ = Phase::kRestless;
   }
 }

@@ -30,7 +30,8 @@ class GraspSequence {
   Phase phase() const { return phase_; }
   /// The stand-in shall hold the object.
   bool needs_stand_in() const { return phase_ < Phase::kAlone || phase_ == Phase::kFailed; }
-  /// Of the object, as sensed, between the means of the last two windows of half settle_s [m/s].
+  /// Of the object, as sensed: between means over 0.35 s, the last two or the first and the last,
+  /// whichever is less; 0 until there are two [m/s].
   double drift_speed() const { return drift_.speed; }
   /// 0 .. 1.
   double progress() const { return progress_; }
@@ -47,14 +48,19 @@ class GraspSequence {
 
  private:
   struct Drift {
-    Vector3d sum = Vector3d::Zero(), mean_before = Vector3d::Zero();  // of p_WO [m]
-    int ticks = 0;                                                    // in this window
-    double speed = 0;                                                 // [m/s]
+    Vector3d sum = Vector3d::Zero();    // of p_WO in this window [m]
+    int ticks = 0;                      // in this window
+    int windows = 0;                    // before it
+    Vector3d first = Vector3d::Zero();  // mean of the first window [m]
+    Vector3d last = Vector3d::Zero();   // of the one before this [m]
+    double speed = 0;                   // [m/s]
     template <typename V>
     void Fields(V& v) {
       v("sum", sum);
-      v("mean_before", mean_before);
       v("ticks", ticks);
+      v("windows", windows);
+      v("first", first);
+      v("last", last);
       v("speed", speed);
     }
   };

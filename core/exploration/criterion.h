@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/common/info_table.h"
+
 namespace regrasp {
 
 /// In the order of the table.
@@ -66,11 +68,7 @@ inline constexpr auto kCriterionTable = std::to_array<CriterionInfo>({
      .takes_load_margin = true},
 });
 inline constexpr auto kLastCriterion = static_cast<Criterion>(kCriterionTable.size() - 1);
-static_assert([] {
-  for (std::size_t i = 0; i < kCriterionTable.size(); ++i)
-    if (kCriterionTable[i].id != static_cast<Criterion>(i)) return false;
-  return true;
-}());
+static_assert(InOrder(kCriterionTable));
 
 constexpr const CriterionInfo& InfoOf(Criterion criterion) {
   return kCriterionTable[static_cast<std::size_t>(criterion)];
@@ -89,10 +87,6 @@ constexpr const CriterionInfo* FindCriterion(std::string_view name) {
   return row == kCriterionTable.end() ? nullptr : row;
 }
 
-inline constexpr auto kCriterionNames = [] {
-  std::array<std::string_view, kCriterionTable.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kCriterionTable[i].name;
-  return names;
-}();
+inline constexpr auto kCriterionNames = NamesOf<kCriterionTable.size()>(kCriterionTable);
 
 }  // namespace regrasp

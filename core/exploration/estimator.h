@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/common/info_table.h"
+
 namespace regrasp {
 
 /// In the order of the table. kSecant is the paper's printed line 6.
@@ -32,22 +34,14 @@ inline constexpr auto kEstimatorTable = std::to_array<EstimatorInfo>({
     {Estimator::kLeastSquares, "least_squares", true, true},
 });
 inline constexpr auto kLastEstimator = static_cast<Estimator>(kEstimatorTable.size() - 1);
-static_assert([] {
-  for (std::size_t i = 0; i < kEstimatorTable.size(); ++i)
-    if (kEstimatorTable[i].id != static_cast<Estimator>(i)) return false;
-  return true;
-}());
+static_assert(InOrder(kEstimatorTable));
 
 constexpr const EstimatorInfo& InfoOf(Estimator estimator) {
   return kEstimatorTable[static_cast<std::size_t>(estimator)];
 }
 constexpr std::string_view Name(Estimator estimator) { return InfoOf(estimator).name; }
 
-inline constexpr auto kEstimatorNames = [] {
-  std::array<std::string_view, kEstimatorTable.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kEstimatorTable[i].name;
-  return names;
-}();
+inline constexpr auto kEstimatorNames = NamesOf<kEstimatorTable.size()>(kEstimatorTable);
 /// The default first.
 inline constexpr auto kOfferedEstimators = [] {
   auto names = kEstimatorNames;

@@ -72,9 +72,16 @@ void FingerGait::EndMotion(const ControlTick& tick) {
   BeginCycle(tick.hand);
 }
 
+FingerSet FingerGait::Movable(const HandModel& hand, FingerSet fingers) {
+  for (int i : fingers)
+    if (!PlacesItsTip(hand.fingers[i])) fingers.remove(i);
+  return fingers;
+}
+
 void FingerGait::BeginCycle(const HandModel& hand) {
-  for (const GaitStep& step : order_)
-    if (PlacesItsTip(hand.fingers[step.finger])) waiting_.add(step.finger);
+  FingerSet all;
+  for (const GaitStep& step : order_) all.add(step.finger);
+  waiting_ = Movable(hand, all);
   refused_finger_ = -1;
   sought_ = false;
   room_for_ = -1;
@@ -175,8 +182,9 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
                   "the object cannot turn further: no farther than before in %d cycles",
                   stale_cycles_);
   } else if (refused_finger_ >= 0) {
-    std::ranges::copy(MayNotLeave(tick.hand, refused_finger_, refused_margin_, refused_below_),
-                      error_);
+    const auto text = MayNotLeave(tick.hand, refused_finger_, refused_margin_, refused_below_);
+    static_assert(sizeof(text) <= sizeof(error_));
+    std::ranges::copy(text, error_);
   } else {
     const int finger = manipulation_.end_finger();
     std::snprintf(error_, sizeof(error_), "the object cannot turn further: %s%s%s",

@@ -178,7 +178,9 @@ class FingerGait {
   void Remember(int finger, const ControlTick& tick, const ObjectWrench& wrench);
   void StartMotion(const ControlTick& tick, const ObjectWrench& wrench);
   void EndMotion(const ControlTick& tick);
-  /// Every finger whose tip can be put elsewhere waits for its turn again.
+  /// Those whose tips can be put elsewhere.
+  static FingerSet Movable(const HandModel& hand, FingerSet fingers);
+  /// Every such finger waits for its turn again.
   void BeginCycle(const HandModel& hand);
   /// The object turns on between two motions, while fingers regrasp.
   ObjectMotion TurnMeanwhile(const ControlTick& tick, const ObjectWrench& wrench);

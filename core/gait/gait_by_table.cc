@@ -20,8 +20,7 @@ void FingerGait::SearchStance(const ControlTick& tick) {
                  tick.estimate.object_scale, control.max_normal_force, tick.gait.search_step);
   if (search_.margin() < margin_wanted_ && search_.evaluations() < tick.gait.search_trials) return;
   home_.stance = search_.stance();
-  for (int i : tick.grasp.without(request_.make_room_for))
-    if (PlacesItsTip(tick.hand.fingers[i])) waiting_.add(i);
+  waiting_ = Movable(tick.hand, tick.grasp.without(request_.make_room_for));
   Enter(GaitPhase::kChoose);
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/common/info_table.h"
 #include "core/quality/grasp.h"
 #include "core/quality/stability.h"
 
@@ -80,10 +81,10 @@ inline constexpr std::size_t kNumMeasures = kMeasureTable.size();
 /// How many a frame carries: the first rows.
 inline constexpr std::size_t kNumFrameMeasures = static_cast<std::size_t>(std::ranges::count_if(
     kMeasureTable, [](const MeasureInfo& m) { return m.cost != MeasureCost::kOnRequest; }));
+static_assert(InOrder(kMeasureTable));
 static_assert([] {
   for (std::size_t i = 0; i < kNumMeasures; ++i)
-    if (kMeasureTable[i].id != static_cast<Measure>(i) ||
-        (kMeasureTable[i].cost == MeasureCost::kOnRequest) != (i >= kNumFrameMeasures))
+    if ((kMeasureTable[i].cost == MeasureCost::kOnRequest) != (i >= kNumFrameMeasures))
       return false;
   return true;
 }());
@@ -95,10 +96,6 @@ constexpr const MeasureInfo& InfoOf(Measure measure) {
 }
 
 /// Names of the measures that a frame carries: what control.stability_measure may be.
-inline constexpr auto kFrameMeasureNames = [] {
-  std::array<std::string_view, kNumFrameMeasures> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kMeasureTable[i].name;
-  return names;
-}();
+inline constexpr auto kFrameMeasureNames = NamesOf<kNumFrameMeasures>(kMeasureTable);
 
 }  // namespace regrasp

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/common/info_table.h"
+
 namespace regrasp {
 namespace {
 
@@ -23,11 +25,7 @@ constexpr std::array<Preset, 5> kPresets{{
     {"taxel", {0, 0, 0.1, 0.6 * kDegree, 5e-3, 5 * kDegree, 6.6e-3, 15, 1}},
 }};
 
-constexpr auto kNames = [] {
-  std::array<std::string_view, kPresets.size()> names;
-  for (std::size_t i = 0; i < names.size(); ++i) names[i] = kPresets[i].name;
-  return names;
-}();
+constexpr auto kNames = NamesOf<kPresets.size()>(kPresets);
 
 }  // namespace
 

@@ -12,6 +12,8 @@
 #include <optional>
 #include <string_view>
 
+#include "core/common/info_table.h"
+
 namespace regrasp {
 
 enum class CommandType : std::uint8_t {
@@ -63,11 +65,7 @@ inline constexpr auto kJobTable = std::to_array<JobInfo>({
   {JobMethod::kMove, "move", CommandType::kMove, SessionState::kHolding, SessionState::kMoving, "moving", true},
 });
 // clang-format on
-static_assert([] {
-  for (std::size_t i = 0; i < kJobTable.size(); ++i)
-    if (kJobTable[i].id != static_cast<JobMethod>(i)) return false;
-  return kJobTable.size() == static_cast<std::size_t>(JobMethod::kStep);
-}());
+static_assert(InOrder(kJobTable) && kJobTable.size() == static_cast<std::size_t>(JobMethod::kStep));
 
 /// The row whose `member` is `value`, or null.
 template <typename T>

@@ -132,7 +132,8 @@ struct Reader {
         wrong(key.kind == KeyKind::kSpeed ? "a number, or \"max\"" : "a string");
       text = HomeExpanded(*node.value<std::string>());
       if (IsPlace(key.name) && !text.empty() && !text.starts_with('/'))
-        wrong("an absolute path, or one that begins with ~/");
+        wrong(text.starts_with("~/") ? "$HOME to be set to an absolute path"
+                                     : "an absolute path, or one that begins with ~/");
     }
     SetKey(config, key, text, Place(node));
   }

@@ -39,7 +39,7 @@ class Recorder {
   /// A state to go on from: what the control loop answered to a mark.
   void Add(const JournalNews& mark);
   /// Waits until the journal as it was handed over is in the file, or the file has ended; 0.2 s at
-  /// most, where the disk is slow.
+  /// most, where the disk is slow: so long nobody is served.
   void AwaitJournal();
   /// Whether a state is due at this moment; asked again, the next one.
   bool TakeStateDue(const Published& published);

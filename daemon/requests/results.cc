@@ -113,8 +113,10 @@ void Draw(Job* job) {
       job->file = FreeFile(job->directory, job->name, ".png").filename().string();
     WriteOutput(job->directory / job->file,
                 job->overwrite ? Draft::Existing::kReplace : Draft::Existing::kKeep,
-                [job](const std::string& draft) { DrawInto(*job, draft); });
-    job->bytes = std::filesystem::file_size(job->directory / job->file);
+                [job](const std::string& draft) {
+                  DrawInto(*job, draft);
+                  job->bytes = std::filesystem::file_size(draft);
+                });
   } catch (const RpcException& e) {
     job->error = e.error();
   } catch (const std::exception& e) {

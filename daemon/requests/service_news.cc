@@ -135,7 +135,7 @@ void Service::TakeInNews() {
     TakeIn(*untaken_);
     journal = journal || untaken_->kind != JournalNews::Kind::kMark;
   }
-  // Nobody hears of what a command did before the run file has it.
+  // Nobody hears of what a command did before the run file has it, unless the disk is slow.
   if (journal && recorder_) recorder_->AwaitJournal();
 }
 

@@ -244,9 +244,11 @@ class HelpersEnd(DaemonCase):
         time.sleep(0.5)
         command.send_signal(signal.SIGKILL)
         command.wait()
+        deadline = time.monotonic() + HANG_S
         while pathlib.Path(f"/proc/{helpers[0]}/exe").exists():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
+        self.assertFalse((self.dir / "x.mp4").exists())  # it would be, had it gone on
 
 
 if __name__ == "__main__":

@@ -60,7 +60,9 @@ def configured_socket():
             raise ValueError(f"{file}: {error}") from None
     if named is None or named == "":
         return None
-    place = os.path.expanduser(named) if isinstance(named, str) else ""
+    place = named if isinstance(named, str) else ""
+    if place.startswith("~/"):
+        place = os.path.expanduser(place)
     if not os.path.isabs(place):
         raise ValueError(f"{file}: socket = {named!r}: expected an absolute path, or one that begins with ~/")
     return place
@@ -120,25 +122,26 @@ def start(seed=1, hand=None, object=None, noise=None, clock="lockstep", stepper=
     return connected
 
 
-def _abandoned(path):
-    """Whether a directory is this user's and neither the program that made it nor its daemon lives: both have a lock."""
+def _remove_abandoned(path):
+    """Removes a directory that is this user's where neither the program that made it nor its daemon lives: both have a lock.
+    Ours is held until it has gone: somebody who has just made it waits for that."""
     try:
         directory = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     except OSError:
-        return False
+        return
     locks = [directory]
     try:
         if os.fstat(directory).st_uid != os.geteuid():
-            return False
+            return
         fcntl.flock(directory, fcntl.LOCK_EX | fcntl.LOCK_NB)
         try:
             locks.append(os.open("regrasp.sock.lock", os.O_RDONLY | os.O_NOFOLLOW, dir_fd=directory))
+            fcntl.flock(locks[1], fcntl.LOCK_EX | fcntl.LOCK_NB)
         except FileNotFoundError:
-            return True
-        fcntl.flock(locks[1], fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return True
+            pass  # there was no daemon
+        shutil.rmtree(path, ignore_errors=True)
     except OSError:
-        return False
+        return
     finally:
         for lock in locks:
             os.close(lock)
@@ -150,8 +153,7 @@ def private_directory():
     if len(os.fsencode(base)) > 107 - len("/regrasp-python-XXXXXXXX/regrasp.sock"):
         base = "/tmp"  # the path of a socket has at most 107 bytes
     for left in (*pathlib.Path(base).glob("regrasp-private-*"), *pathlib.Path(base).glob("regrasp-python-*")):
-        if _abandoned(left):
-            shutil.rmtree(left, ignore_errors=True)
+        _remove_abandoned(left)
     while True:
         directory = tempfile.mkdtemp(prefix="regrasp-python-", dir=base)
         try:

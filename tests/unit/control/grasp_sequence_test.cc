@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/common/random.h"
 #include "core/exploration/exploration_parameters.h"
 #include "core/gait/gait_parameters.h"
 #include "core/shape/felt_surface.h"
@@ -25,8 +26,11 @@ class GraspSequenceTest : public ::testing::Test {
     StateEstimator estimator(hand_, kDt);
     Start(estimator.Update(reading, parameters_));
     double progress = 0;
+    Vector3d p_WO = reading.p_WO;
     for (ticks_ = 0; ticks_ < max_ticks; ++ticks_) {
-      if (!sequence_.needs_stand_in()) reading.p_WO += drift_ * kDt;
+      if (!sequence_.needs_stand_in()) p_WO += drift_ * kDt;
+      if (ticks_ % 66 == 0) reading.p_WO = p_WO + pose_noise_ * random_.Normal3();  // at 15 Hz
+      if (pose_noise_ == 0) reading.p_WO = p_WO;
       const Estimate& e = estimator.Update(reading, parameters_);
       sequence_.Update(TickOf(e), &controller_, &tasks_);
       EXPECT_GE(sequence_.progress(), progress);  // never goes back
@@ -59,6 +63,8 @@ class GraspSequenceTest : public ::testing::Test {
   FingerTasks tasks_;
   int ticks_ = 0, held_alone_ = 0;
   Vector3d drift_ = Vector3d::Zero();  // of the object, once it is left alone [m/s]
+  double pose_noise_ = 0;              // sigma of the sensed position, per axis [m]
+  RandomStream random_{1, 0};
 };
 
 TEST_F(GraspSequenceTest, LetsGoOfTheObjectLongBeforeItIsDone) {
@@ -126,6 +132,17 @@ TEST_F(GraspSequenceTest, AnObjectThatMovesOnIsNotHeld) {
     EXPECT_NEAR(sequence_.drift_speed(), drift_.norm(), 0.03 * drift_.norm());
     EXPECT_NEAR(held_alone_ * kDt, parameters_.settle_s + (speed < 1 ? 0 : parameters_.rest_s),
                 3 * kDt);
+  }
+}
+
+TEST_F(GraspSequenceTest, TheNoiseOfTheSensedPoseIsNoMotion) {
+  parameters_.settle_s = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    sequence_ = GraspSequence();
+    random_ = RandomStream(seed, 0);
+    pose_noise_ = 0.005;  // as with taxels
+    ASSERT_TRUE(Run(5, 20000));
+    EXPECT_EQ(sequence_.phase(), Phase::kDone) << seed << ' ' << sequence_.drift_speed();
   }
 }
 
