@@ -85,7 +85,7 @@ struct ControlParameters {
   double stand_in_release_s = 0.5;  ///< after the ramp the stand-in lets go
   double settle_s = 0.7;            ///< then so long until `holding`
   double rest_speed = 0.002;        ///< of the object, above which it is not held yet [m/s]
-  double rest_s = 3;                ///< after settling, to come to rest; then the grasp has failed
+  double rest_s = 3;  ///< after settling, to come to rest; what moves one way then is not held
   // How a finger is taken to follow an object that turns: gait and the criterion reserve.
   ReachRule reach;
   // Stability.

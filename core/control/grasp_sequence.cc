@@ -44,6 +44,7 @@ void GraspSequence::Watch(const ControlTick& tick) {
     drift_.speed =
         std::min((mean - drift_.last).norm(), (mean - drift_.first).norm() / (drift_.windows - 1)) /
         kRestWindow_s;
+    drift_.path += (mean - drift_.last).norm();
   }
   drift_.last = mean;
 }
@@ -131,7 +132,7 @@ void GraspSequence::Update(const ControlTick& tick, HybridController* controller
     if (parameters.rest_speed == 0 || (known && drift_.speed <= parameters.rest_speed))
       phase_ = Phase::kDone;
     else if (known && time > parameters.settle_s + parameters.rest_s)
-      phase_ = Phase::kRestless;
+      phase_ = drift_.directed() ? Phase::kRestless : Phase::kDone;
   }
 }
 

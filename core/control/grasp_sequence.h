@@ -19,7 +19,7 @@ class GraspSequence {
     kAlone,  ///< the stand-in has let go; settling
     kDone,
     kFailed,    ///< fewer than three fingers touched, of fewer than three not all
-    kRestless,  ///< alone, but the object has not come to rest
+    kRestless,  ///< alone, but the object goes on moving one way
   };
 
   /// `q_closed` [rad] is made for an object at `p_WO_expected` [m]; see control.follow_object.
@@ -53,7 +53,10 @@ class GraspSequence {
     int windows = 0;                    // before it
     Vector3d first = Vector3d::Zero();  // mean of the first window [m]
     Vector3d last = Vector3d::Zero();   // of the one before this [m]
+    double path = 0;                    // through the means so far [m]
     double speed = 0;                   // [m/s]
+    /// The means go one way; noise goes back and forth.
+    bool directed() const { return (last - first).norm() > 0.5 * path; }
     template <typename V>
     void Fields(V& v) {
       v("sum", sum);
@@ -61,6 +64,7 @@ class GraspSequence {
       v("windows", windows);
       v("first", first);
       v("last", last);
+      v("path", path);
       v("speed", speed);
     }
   };

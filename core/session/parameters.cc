@@ -70,7 +70,7 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("control.rotation_stiffness", "N m/rad", 0, 5, "Proportional gain from object orientation error to torque.", kMeasured, [](P& p) { return &p.control.rotation_stiffness; }),
   Row("control.settle_s", "s", 0, 10, "Time between the stand-in letting go and the state holding.", kOurs, [](P& p) { return &p.control.settle_s; }),
   Row("control.rest_speed", "m/s", 0, 0.1, "Speed of the object, by means of the sensed pose over 0.35 s, above which a grasp has not come to rest; 0: not asked.", kOurs, [](P& p) { return &p.control.rest_speed; }),
-  Row("control.rest_s", "s", 0, 60, "Time after settling in which the object must come to rest; then the grasp has failed.", kOurs, [](P& p) { return &p.control.rest_s; }),
+  Row("control.rest_s", "s", 0, 60, "Time after settling in which the object must come to rest; where it still moves one way then, the grasp has failed.", kOurs, [](P& p) { return &p.control.rest_s; }),
   Row("control.slide_force_limit", "N", 0.05, 5, "Largest tangential force of a sliding finger.", kOurs, [](P& p) { return &p.control.slide_force_limit; }),
   Row("control.slide_friction_share", "", 0, 1, "Share of a sliding finger's normal force assumed to drag on the object.", kMeasured, [](P& p) { return &p.control.slide_friction_share; }),
   Row("control.slide_stiffness", "N/m", 10, 2000, "Tangential stiffness of a sliding finger about its reference.", kOurs, [](P& p) { return &p.control.slide_stiffness; }),
