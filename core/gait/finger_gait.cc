@@ -21,7 +21,7 @@ void FingerGait::Start(const Request& request, const ControlTick& tick,
   *this = FingerGait();
   request_ = request;
   sign_ = request.angle_rad < 0 ? -1.0 : 1.0;
-  order_ = MakeGaitOrder(tick.hand, tick.estimate, tick.grasp);
+  cycle_.order = MakeGaitOrder(tick.hand, tick.estimate, tick.grasp);
   home_ = MakeHome(tick.estimate, wrench);
   first_stance_ = home_.stance;
   forgiveness_.Start(wrench);
@@ -41,37 +41,6 @@ void FingerGait::Enter(GaitPhase phase) {
   happened_.changed = true;
 }
 
-void FingerGait::StartMotion(const ControlTick& tick, const ObjectWrench& wrench) {
-  const GaitParameters& parameters = tick.gait;
-  const double left = std::abs(request_.angle_rad) - turned_before_;
-  const double due = std::max(0.0, parameters.step_rad - turned_meanwhile_);
-  const double step = request_.continuous ? due : std::min(due, left);
-  const bool went_on = turned_meanwhile_ > 0;
-  turned_meanwhile_ = 0;
-  if (went_on && step < parameters.progress && step < left) {
-    BeginCycle(tick.hand);
-    return Enter(GaitPhase::kChoose);
-  }
-  const double speed = request_.speed_rad_s > 0 ? request_.speed_rad_s : parameters.speed_rad_s;
-  ObjectMotion per_rad;
-  if (parameters.forgive && step > 0.5 * parameters.step_rad)
-    per_rad = forgiveness_.WinBack(parameters, wrench, request_.axis_W, turned_so_far(), step);
-  per_rad.w_W += sign_ * request_.axis_W;
-  manipulation_.Start(per_rad, step, speed, parameters.acceleration,
-                      LocalManipulation::AtLimit::kEnds);
-  Enter(GaitPhase::kObjectMotion);
-}
-
-void FingerGait::EndMotion(const ControlTick& tick) {
-  turned_before_ += manipulation_.travelled();
-  if (const int finger = manipulation_.end_finger(); finger >= 0) {
-    double& lead = lead_[finger];
-    const double missing = manipulation_.length() - manipulation_.travelled();
-    lead = std::min(tick.gait.lead_max, lead + 0.5 * missing);
-  }
-  BeginCycle(tick.hand);
-}
-
 FingerSet FingerGait::Movable(const HandModel& hand, FingerSet fingers) {
   for (int i : fingers)
     if (!PlacesItsTip(hand.fingers[i])) fingers.remove(i);
@@ -80,17 +49,15 @@ FingerSet FingerGait::Movable(const HandModel& hand, FingerSet fingers) {
 
 void FingerGait::BeginCycle(const HandModel& hand) {
   FingerSet all;
-  for (const GaitStep& step : order_) all.add(step.finger);
-  waiting_ = Movable(hand, all);
-  refused_finger_ = -1;
-  sought_ = false;
-  room_for_ = -1;
-  made_room_ = sought_for_ = put_off_ = let_by_ = FingerSet();
+  for (const GaitStep& step : cycle_.order) all.add(step.finger);
+  cycle_.waiting = Movable(hand, all);
+  cycle_.refused = Refusal();
+  table_.BeginCycle();
+  planned_.BeginCycle();
 }
 
 StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) const {
-  const double lead =
-      request_.make_room_for >= 0 ? 0.0 : parameters.lead * parameters.step_rad + lead_[finger];
+  const double lead = makes_room() ? 0.0 : parameters.lead * parameters.step_rad + lead_[finger];
   const Quaterniond ahead = FromRotationVector(-sign_ * lead * request_.axis_W);
   const StanceContact& first = home_.stance[finger];
   return {ahead * first.p_OC_W, ahead * first.p_OF_W, ahead * first.normal_W};
@@ -98,8 +65,7 @@ StanceContact FingerGait::HomeOf(int finger, const GaitParameters& parameters) c
 
 Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
                                      const ControlTick& tick) const {
-  if (planned(tick) && landing_[finger].found) {
-    const Landing& landing = landing_[finger];
+  if (const Landing& landing = landing_; landing.found) {
     const Vector3d& p_WO = tick.estimate.p_WO;
     const Quaterniond& q_WO = tick.estimate.q_WO;
     return {p_WO + q_WO * landing.p_OC,
@@ -107,14 +73,14 @@ Regrasp::Target FingerGait::TargetOf(int finger, const ObjectWrench& wrench,
             q_WO * landing.normal_O,
             std::nullopt,
             p_WO,
-            along_.speed() * sign_ * request_.axis_W};
+            along_.speed() * axis_W()};
   }
   const StanceContact home = HomeOf(finger, tick.gait);
   const Vector3d& centre = wrench.p_ref();
   std::optional<Vector3d> recall;
   if (tick.gait.mode == GaitMode::kExploring) {
-    const double share = phase_ == GaitPhase::kRegrasp ? regrasp_.request().disc_share : 1.0;
-    recall = centre + Shifted(home, TangentPart(share * found_[finger], home.normal_W)).p_OC_W;
+    const Vector3d shift = regrasp_.request().disc_share * explorations_.found_W(finger);
+    recall = centre + Shifted(home, TangentPart(shift, home.normal_W)).p_OC_W;
   }
   return {centre + home.p_OC_W, centre + home.p_OF_W, home.normal_W, recall, centre,
           Vector3d::Zero()};
@@ -127,62 +93,90 @@ bool FingerGait::Disturbed(const Estimate& estimate, const ObjectWrench& wrench,
   return happened_.error_position > position || happened_.error_rotation > rotation;
 }
 
-bool FingerGait::MustBreakOff(const ControlTick& tick, const ObjectWrench& wrench) {
-  const GaitParameters& parameters = tick.gait;
-  if (Disturbed(tick.estimate, wrench, parameters.abort_position, parameters.abort_rotation))
-    return true;
-  if (!planned(tick)) return false;
-  if (regrasp_.phase() == Regrasp::Phase::kUnload && !regrasp_began_) {
-    regrasp_began_ = true;
-    error_position_ = happened_.error_position;
-    error_rotation_ = happened_.error_rotation;
-  }
-  const bool leaving = regrasp_.phase() == Regrasp::Phase::kUnload ||
-                       regrasp_.phase() == Regrasp::Phase::kLift ||
-                       regrasp_.phase() == Regrasp::Phase::kSlide;
-  if (!leaving) return false;
-  bool slips = false;
-  for (int i : tick.grasp.without(regrasp_.finger())) {
-    const int ticks = tick.finger(i).ticks_without_contact;
-    slips |= ticks * tick.dt >= tick.gait.slip_s && ticks * tick.dt < tick.gait.away_s;
-  }
-  if (!slips &&
-      happened_.error_position <
-          error_position_ + tick.gait.leave_share * parameters.abort_position &&
-      happened_.error_rotation <
-          error_rotation_ + tick.gait.leave_share * parameters.abort_rotation)
-    return false;
-  caution_[regrasp_.finger()] += tick.gait.caution;
-  return true;
+GaitSituation FingerGait::Situation(const ControlTick& tick, const ObjectWrench& wrench) const {
+  GaitSituation now;
+  now.since_s = ticks_ * tick.dt;
+  now.makes_room = makes_room();
+  now.has_turned = turned_before_ != 0;
+  now.axis_W = axis_W();
+  now.p_WO = wrench.p_ref();
+  now.homes.resize(home_.stance.size());
+  for (int i = 0; i < tick.hand.num_fingers(); ++i) now.homes[i] = HomeOf(i, tick.gait);
+  now.seed = request_.seed;
+  return now;
 }
 
-void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
-  if (request_.make_room_for >= 0) {
-    Enter(GaitPhase::kFinish);
-    return;
+void FingerGait::UpdateChoose(const ControlTick& tick, const ObjectWrench& wrench) {
+  const GaitSituation now = Situation(tick, wrench);
+  Take(planned(tick) ? planned_.Next(tick, now, &cycle_) : table_.Next(tick, now, &cycle_), tick,
+       wrench);
+}
+
+void FingerGait::Take(const GaitChoice& choice, const ControlTick& tick,
+                      const ObjectWrench& wrench) {
+  if (choice.refuses) happened_.refused = cycle_.refused;
+  switch (choice.kind) {
+    case GaitChoice::Kind::kWait:
+      return;
+    case GaitChoice::Kind::kChoose:
+      return Enter(GaitPhase::kChoose);
+    case GaitChoice::Kind::kRegrasp:
+      return StartRegrasp(choice, tick);
+    case GaitChoice::Kind::kPlan:
+      return Enter(GaitPhase::kPlan);
+    case GaitChoice::Kind::kStance:
+      return Enter(GaitPhase::kStance);
+    case GaitChoice::Kind::kCycleEnds:
+      return EndCycle(choice, tick, wrench);
   }
-  if (refused_finger_ >= 0 && refused_finger_ == order_.back().finger && !sought_ &&
-      !planned(tick)) {
-    sought_ = true;  // once per cycle: contacts from which it may leave
-    Enter(GaitPhase::kStance);
-    return;
+}
+
+void FingerGait::StartRegrasp(const GaitChoice& choice, const ControlTick& tick) {
+  landing_ = choice.landing;
+  const int finger = choice.finger;
+  Regrasp::Request request;
+  request.slide.finger = finger;
+  request.slide.estimator = tick.gait.estimator;
+  request.slide.seed = request_.seed + static_cast<std::uint64_t>(regrasps_);
+  request.slide.criterion = tick.gait.criterion;
+  request.slide.turn_axis_W = axis_W();
+  request.slide.gradient_W = explorations_.gradient_W(finger);
+  for (std::size_t k = 0; k + 1 < cycle_.order.size(); ++k) {
+    const GaitStep& step = cycle_.order[k];
+    if (step.finger != finger || step.objective != GaitObjective::kStabilityWithoutNext) continue;
+    request.slide.criterion = Criterion::kStability;
+    request.slide.without = cycle_.order[k + 1].finger;
   }
+  request.hop = tick.gait.hop;
+  request.over_surface = choice.planned;
+  request.transfer_s = choice.transfer_s;
+  request.rub_s = choice.rub_s;
+  const bool unknown = choice.planned && landing_.unknown >= tick.gait.explore_unknown;
+  request.explore = !makes_room() && explorations_.Explores(tick.gait, finger, unknown);
+  request.disc_share = Explorations::DiscShare(tick, opposing());
+  regrasp_.Start(request);
+  happened_.regrasp_began = true;
+  Enter(GaitPhase::kRegrasp);
+}
+
+void FingerGait::EndCycle(const GaitChoice& choice, const ControlTick& tick,
+                          const ObjectWrench& wrench) {
+  if (makes_room()) return Enter(GaitPhase::kFinish);
   if (turned_before_ > 0) ++cycles_;
   if (there()) return Enter(GaitPhase::kFinish);  // while fingers regrasped
-  idle_cycles_ = turned_before_ - turned_until_ < tick.gait.progress ? idle_cycles_ + 1 : 0;
+  cycle_.idle = turned_before_ - turned_until_ < tick.gait.progress ? cycle_.idle + 1 : 0;
   turned_until_ = turned_before_;
   // Forward what a reference that forgives has given up is no way ahead.
   stale_cycles_ = turned_before_ - turned_most_ < tick.gait.progress ? stale_cycles_ + 1 : 0;
   turned_most_ = std::max(turned_most_, turned_before_);
-  const bool stale = planned(tick) && stale_cycles_ > kStale * tick.gait.patience;
-  if (!stale && idle_cycles_ <= (planned(tick) ? tick.gait.patience : tick.gait.idle_cycles))
-    return StartMotion(tick, wrench);
+  const bool stale = stale_cycles_ > choice.most_stale;
+  if (!stale && cycle_.idle <= choice.most_idle) return StartMotion(tick, wrench);
   if (stale) {
     std::snprintf(error_, sizeof(error_),
                   "the object cannot turn further: no farther than before in %d cycles",
                   stale_cycles_);
-  } else if (refused_finger_ >= 0) {
-    const auto text = MayNotLeave(tick.hand, refused_finger_, refused_margin_, refused_below_);
+  } else if (const Refusal& refused = cycle_.refused; refused.finger >= 0) {
+    const auto text = MayNotLeave(tick.hand, refused.finger, refused.margin, refused.below);
     static_assert(sizeof(text) <= sizeof(error_));
     std::ranges::copy(text, error_);
   } else {
@@ -194,17 +188,17 @@ void FingerGait::EndCycle(const ControlTick& tick, const ObjectWrench& wrench) {
   Enter(GaitPhase::kFailed);
 }
 
-void FingerGait::Forgive(const ControlTick& tick, bool held, ObjectWrench* wrench) {
-  turned_before_ += sign_ * forgiveness_.Forgive(tick, request_.axis_W, held, wrench);
+bool FingerGait::MustBreakOff(const ControlTick& tick, const ObjectWrench& wrench) {
+  const GaitParameters& parameters = tick.gait;
+  return Disturbed(tick.estimate, wrench, parameters.abort_position, parameters.abort_rotation) ||
+         (regrasp_planned() && planned_.MustBreakOff(tick, regrasp_, happened_.error_position,
+                                                     happened_.error_rotation));
 }
 
-ObjectMotion FingerGait::UpdateMotion(const ControlTick& tick, ObjectWrench* wrench) {
-  const ObjectMotion motion = manipulation_.Update(tick, *wrench, home_);
-  if (manipulation_.end() == LocalManipulation::End::kNone) return motion;
-  EndMotion(tick);
-  Forgive(tick, false, wrench);
-  Enter(stop_ || there() ? GaitPhase::kFinish : GaitPhase::kSettle);
-  return motion;
+double FingerGait::Grip(const ControlTick& tick) const {
+  const bool pinch = finger() >= 0 && finger() == opposing() && regrasp_planned() &&
+                     tick.control.friction_estimate >= tick.gait.opposing_friction;
+  return pinch ? std::max(tick.gait.grip_force, tick.gait.opposing_grip) : tick.gait.grip_force;
 }
 
 void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* controller,
@@ -220,14 +214,14 @@ void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* contro
   happened_.changed |= regrasp_.phase() != before;
   happened_.explore_began = regrasp_.slide().slide_began();
   happened_.explore_ended = regrasp_.slide().slide_ended();
-  if (happened_.explore_ended) Remember(finger, tick, wrench);
+  if (happened_.explore_ended)
+    explorations_.Add(tick.gait, regrasp_.slide(),
+                      tick.finger(finger).p_WC - wrench.p_ref() - HomeOf(finger, tick.gait).p_OC_W);
   if (regrasp_.active()) return;
   happened_.regrasp_ended = true;
-  regrasp_began_ = false;
-  if (!regrasp_.aborted()) caution_[finger] *= tick.gait.caution_kept;
-  if (!regrasp_.aborted() && regrasp_.request().rub_s > 0) ++rubs_;
-  misses_ = regrasp_.no_surface() ? misses_ + 1 : 0;
-  if (regrasp_.no_surface() && (!planned(tick) || misses_ >= tick.gait.misses)) {
+  const bool goes_on =
+      regrasp_planned() ? planned_.Ended(tick, regrasp_, &cycle_) : !regrasp_.no_surface();
+  if (!goes_on) {
     std::snprintf(error_, sizeof(error_), "%s found no surface to stand on",
                   tick.hand.fingers[finger].name.c_str());
     Enter(GaitPhase::kFailed);
@@ -237,12 +231,6 @@ void FingerGait::UpdateRegrasp(const ControlTick& tick, HybridController* contro
     Enter(GaitPhase::kRecover);
   } else {
     ++regrasps_;
-    if (regrasp_.no_surface()) {
-      waiting_.add(finger);
-    } else {
-      let_by_ = put_off_;  // it may have cleared their way
-      put_off_ = FingerSet();
-    }
     Enter(GaitPhase::kChoose);
   }
 }
@@ -270,11 +258,26 @@ bool FingerGait::Rests(const ControlTick& tick, const ObjectWrench& wrench) {
                     kTurnedShare * parameters.abort_rotation);
 }
 
-void FingerGait::UpdateStance(const ControlTick& tick) {
-  if (stance_plan_.leaves() < 0)
-    SearchStance(tick);
-  else if (stance_plan_.Step(tick))
-    EndStancePlan(tick);
+bool FingerGait::SearchStance(const ControlTick& tick) {
+  const ControlParameters& control = tick.control;
+  if (ticks_ == 1) {
+    const int leaves = makes_room() ? request_.make_room_for : opposing();
+    margin_wanted_ = std::max(tick.gait.margin_wanted, tick.gait.want_more * margin_wanted_);
+    search_.Start(first_stance_, home_.stance, tick.grasp, leaves, tick.gait.max_shift,
+                  request_.seed + static_cast<std::uint64_t>(cycle_.searches++));
+  }
+  if (ticks_ % Ticks(tick.gait.search_interval_s, tick.dt) == 0)
+    search_.Step(control.mass_estimate * tick.gravity_W, control.friction_estimate,
+                 tick.estimate.object_scale, control.max_normal_force, tick.gait.search_step);
+  return search_.margin() >= margin_wanted_ || search_.evaluations() >= tick.gait.search_trials;
+}
+
+void FingerGait::UpdateStance(const ControlTick& tick, const ObjectWrench& wrench) {
+  if (planned_.plans_stance()) return Take(planned_.PlanStance(tick), tick, wrench);
+  if (!SearchStance(tick)) return;
+  home_.stance = search_.stance();
+  cycle_.waiting = Movable(tick.hand, tick.grasp.without(request_.make_room_for));
+  Enter(GaitPhase::kChoose);
 }
 
 ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* controller,
@@ -299,7 +302,7 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
 
   switch (phase_) {
     case GaitPhase::kStance:
-      UpdateStance(tick);
+      UpdateStance(tick, wrench);
       break;
     case GaitPhase::kObjectMotion:
       motion = UpdateMotion(tick, &wrench);
@@ -308,13 +311,10 @@ ObjectMotion FingerGait::Update(const ControlTick& tick, HybridController* contr
       if (ticks_ * tick.dt >= tick.gait.settle_s) Enter(GaitPhase::kChoose);
       break;
     case GaitPhase::kChoose:
-      if (planned(tick))
-        NextPlanned(tick, wrench);
-      else
-        Next(tick, wrench);
+      UpdateChoose(tick, wrench);
       break;
     case GaitPhase::kPlan:
-      if (plan_.Step(tick)) EndPlan(tick);
+      Take(planned_.Plan(tick, &cycle_), tick, wrench);
       break;
     case GaitPhase::kRegrasp:
       UpdateRegrasp(tick, controller, tasks);

@@ -44,11 +44,9 @@ void GaitReport::Report(const FingerGait& gait, const ActivityContext& context) 
   const auto emit = [&](EventKind kind, int of, double value, const char* format, auto... args) {
     context.log.Emit(context.tick, kind, of, value, format, args...);
   };
-  if (happened.refused_finger >= 0)
-    emit(EventKind::kRefused, happened.refused_finger, happened.refused_margin, "%s",
-         MayNotLeave(context.now.hand, happened.refused_finger, happened.refused_margin,
-                     happened.refused_below)
-             .data());
+  if (const Refusal& refused = happened.refused; refused.finger >= 0)
+    emit(EventKind::kRefused, refused.finger, refused.margin, "%s",
+         MayNotLeave(context.now.hand, refused.finger, refused.margin, refused.below).data());
   if (happened.aborted)
     emit(EventKind::kSlip, finger, happened.error_position,
          "regrasp broken off: object %.1f mm, %.0f deg off", happened.error_position * 1e3,

@@ -197,8 +197,8 @@ TEST(SavedState, EveryNumberThatActsIsHashed) {
   // What was once left out of the hash.
   const std::set<std::string> gait = ChangeEach(FingerGait());
   for (const char* name :
-       {"order.size", "home.p_WO.", "searches", "regrasp.request.slide.finger",
-        "regrasp.request.slide.criterion", "regrasp.request.slide.seed", "sought"})
+       {"cycle.order.size", "home.p_WO.", "cycle.searches", "regrasp.request.slide.finger",
+        "regrasp.request.slide.criterion", "regrasp.request.slide.seed", "table.sought"})
     EXPECT_TRUE(gait.contains(name) || std::string(name).ends_with("size")) << name;
   EXPECT_GT(gait.size(), 40u);
   EXPECT_GT(ChangeEach(FingerExploration()).size(), 30u);
