@@ -52,13 +52,10 @@ bool IsUtf8(std::string_view text) {
 
 std::string Shown(std::string_view name) {
   constexpr std::size_t kMost = 64;
-  std::string text;
-  for (const unsigned char c : name.substr(0, kMost))
-    if (c >= 0x20 && c < 0x7f)
-      text += static_cast<char>(c);
-    else
-      AppendEscaped(c, &text);
-  return name.size() > kMost ? text + "..." : text;
+  if (name.size() <= kMost) return ShownText(name);
+  std::size_t end = kMost;  // between two characters
+  while (end > kMost - 4 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
+  return ShownText(name.substr(0, end)) + "...";
 }
 
 std::string ShownText(std::string_view text) {

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-namespace regrasp {
+#include "core/common/reason.h"
 
-inline constexpr std::size_t kMaxNameBytes = 128;
+namespace regrasp {
 
 /// What is wrong with a name, or "": empty, longer than kMaxNameBytes, not UTF-8, control
 /// characters or characters that change the direction of text.
@@ -16,8 +16,7 @@ std::string NameFault(std::string_view name);
 /// The same for a name that becomes a file's: also no '/', and neither '.' nor '-' first.
 std::string FileNameFault(std::string_view name);
 
-/// The name as it may be shown to people: at most 64 bytes of it, control characters and what is
-/// not ASCII as "\x1b".
+/// The name as ShownText shows it, at most 64 bytes of it.
 std::string Shown(std::string_view name);
 
 /// A line of text as it may be shown to people: control characters, characters that change the

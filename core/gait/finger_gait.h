@@ -223,7 +223,7 @@ class FingerGait {
   Forgiveness forgiveness_;
   int cycles_ = 0, regrasps_ = 0;
   Happened happened_;
-  char error_[160] = {};
+  char error_[kReasonRoom] = {};
 };
 
 }  // namespace regrasp

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -21,24 +19,6 @@ Verdict CheckStart(const JobInfo& job, SessionState state, bool job_running) {
   const bool lost = state == SessionState::kDropped || state == SessionState::kFaulted;
   return {Kind::kBadState, "the hand does not hold the object",
           lost ? "regrasp reset" : "regrasp grasp"};
-}
-
-/// A sentence as an event holds it: one that is too long ends after a word, with an ellipsis. The
-/// whole is in the record of the job.
-template <typename... Args>
-std::array<char, sizeof(Event::text)> EventText(const char* format, Args... args) {
-  constexpr char kMore[] = " …";
-  std::array<char, 256> whole{};
-  std::array<char, sizeof(Event::text)> text{};
-  const int size = std::snprintf(whole.data(), whole.size(), format, args...);
-  std::copy_n(whole.begin(), text.size() - 1, text.begin());
-  if (size < static_cast<int>(text.size())) return text;
-  std::size_t end = text.size() - sizeof kMore;
-  while (end > 0 && text[end] != ' ') --end;
-  std::fill(std::copy(std::begin(kMore), std::end(kMore),
-                      text.begin() + static_cast<std::ptrdiff_t>(end)),
-            text.end(), 0);
-  return text;
 }
 
 }  // namespace
@@ -94,10 +74,9 @@ void Session::Impl::FinishJob(JobState end, const char* error) {
   job.end_tick = tick;
   if (end == JobState::kDone) job.progress = 1;
   std::snprintf(job.error, sizeof(job.error), "%s", error);
-  log.Emit(tick, EventKind::kJobFinished, job.explore.finger, static_cast<double>(job.id), "%s",
-           EventText("job %lld: %s%s%s", static_cast<long long>(job.id), Name(end).data(),
-                     *error ? ": " : "", error)
-               .data());
+  log.Emit(tick, EventKind::kJobFinished, job.explore.finger, static_cast<double>(job.id),
+           "job %lld: %s%s%s", static_cast<long long>(job.id), Name(end).data(), *error ? ": " : "",
+           error);
   finished.push_back(job);
 }
 
@@ -119,8 +98,8 @@ Verdict Session::Impl::Refuse(const Command& command, const Verdict& verdict) {
     std::snprintf(refused.error, sizeof(refused.error), "%s", verdict.reason);
     finished.push_back(refused);
   }
-  log.Emit(tick, EventKind::kRefused, command.finger, static_cast<double>(command.job), "%s",
-           EventText("refused: %s", verdict.reason).data());
+  log.Emit(tick, EventKind::kRefused, command.finger, static_cast<double>(command.job),
+           "refused: %s", verdict.reason);
   return verdict;
 }
 

@@ -111,7 +111,7 @@ struct Event {
   /// kRegrasp of a finger that explored by manipulability: noise-free objective where it began to
   /// explore (`value` is that at its end); else 0.
   double from = 0;
-  char text[96] = {};  ///< one plain sentence
+  char text[kEventRoom] = {};  ///< one plain sentence
 };
 
 struct Frame {

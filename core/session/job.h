@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/common/fields.h"
+#include "core/common/reason.h"
 #include "core/session/command.h"
 
 namespace regrasp {
@@ -147,7 +148,7 @@ struct JobRecord {
   std::int64_t id = 0;
   JobMethod method = JobMethod::kGrasp;
   JobState state = JobState::kQueued;
-  char error[160] = {};          ///< empty unless failed
+  char error[kReasonRoom] = {};  ///< empty unless failed
   double progress = 0;           ///< 0 .. 1
   std::int64_t start_tick = -1;  ///< tick at which the command was applied
   std::int64_t end_tick = -1;

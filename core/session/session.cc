@@ -136,7 +136,7 @@ void Session::Impl::Tick() {
   times.collide_s = world.stage_times().collide_s;
   times.step_s = world.stage_times().step_s;
   if (status == StepStatus::kFault) {
-    log.Emit(tick, EventKind::kFault, -1, 0, "simulation fault: %.60s", world.fault_message());
+    log.Emit(tick, EventKind::kFault, -1, 0, "simulation fault: %s", world.fault_message());
     FinishJob(JobState::kFailed, "simulation fault");
     Enter(SessionState::kFaulted);
   }

@@ -38,7 +38,7 @@ class ExploreActivity : public Activity {
   GaitReport report_;
   FingerExploration exploration_;
   Vector3d p_path_ = Vector3d::Zero();  // true contact up to which the path is measured [m]
-  char refusal_[128] = {};
+  char refusal_[kReasonRoom] = {};
 };
 
 /// What a frame tells of Algorithm 1. `epsilon`: exploration.epsilon.

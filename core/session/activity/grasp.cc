@@ -34,7 +34,7 @@ ActivityStep GraspActivity::Update(const ActivityContext& context) {
   }
   if (sequence_.phase() == GraspSequence::Phase::kDone) return ActivityStep::Ended(JobState::kDone);
   if (sequence_.phase() == GraspSequence::Phase::kRestless) {
-    char why[96];
+    char why[kReasonRoom];
     std::snprintf(why, sizeof why, "the object does not come to rest: it moves at %.1f mm/s",
                   1e3 * sequence_.drift_speed());
     return ActivityStep::Failed(why);

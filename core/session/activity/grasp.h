@@ -19,7 +19,7 @@ class GraspActivity : public Activity {
 
  private:
   GraspSequence sequence_;
-  std::array<char, 192> refusal_{};
+  ReasonText refusal_{};
 };
 
 }  // namespace regrasp

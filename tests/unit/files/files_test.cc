@@ -91,6 +91,8 @@ TEST(Names, ThatDoHarmAreRefused) {
 TEST(Names, AreShownWithoutWhatATerminalObeys) {
   EXPECT_EQ(Shown("a\x1b[2Jb"), "a\\x1b[2Jb");
   EXPECT_EQ(Shown(std::string(100, 'x')), std::string(64, 'x') + "...");
+  EXPECT_EQ(Shown("hä nd"), "hä nd");
+  EXPECT_EQ(Shown(std::string(63, 'x') + "ää"), std::string(63, 'x') + "...");
   EXPECT_EQ(ShownText("µ = 0.5\x1b[2J \xe2\x80\xae\xff\n"),
             "µ = 0.5\\x1b[2J \\xe2\\x80\\xae\\xff\\x0a");
 }

@@ -4,7 +4,9 @@
 
 #include <string>
 
+#include "core/gait/may_not_leave.h"
 #include "core/hand/scenario.h"
+#include "core/session/event_log.h"
 
 namespace regrasp {
 namespace {
@@ -34,6 +36,17 @@ TEST_F(FewFingers, AHandWithSuchAFingerTurnsAnObjectByOneMotionOnly) {
   EXPECT_FALSE(Allows(CommandType::kRotate, -1, 1));
   EXPECT_TRUE(Allows(CommandType::kRotate, -1, parameters.gait.step_rad));
   EXPECT_TRUE(Allows(CommandType::kGrasp, -1, 0));
+}
+
+// The longest name that a file may give a finger.
+TEST_F(FewFingers, WhatIsSaidOfAFingerHasRoomForItsName) {
+  hand.fingers[0].name = std::string(kMaxNameBytes, 'x');
+  const std::string reason = MayNotLeave(hand, 0, -0.123, 0.25).data();
+  EXPECT_TRUE(reason.ends_with(" without it is -0.123 N, below 0.250 N")) << reason;
+  EventLog log;
+  log.Emit(0, EventKind::kRefused, 0, 0, "job %lld: %s: %s", 123456789LL, "failed", reason.c_str());
+  EXPECT_EQ(log.Take().front().text, "job 123456789: failed: " + reason);
+  EXPECT_LT(reason.size(), sizeof(JobRecord::error));
 }
 
 TEST_F(FewFingers, OfThreeFingersNoneExplores) {
