@@ -87,24 +87,36 @@ bool IsClosed(const Edges& edges) {
       edges, [](const auto& edge) { return edge.second.forth == edge.second.back; });
 }
 
-/// Throws ModelError with what an open surface has: holes, or triangles turned about.
+/// What is wrong with a surface that is not closed, by what is wrong with its edges.
+struct OpenSurface {
+  bool (*is_wrong)(const EdgeUse&);
+  const char *is, *what, *cure;
+};
+constexpr OpenSurface kOpenSurfaces[] = {
+    {[](const EdgeUse& use) { return use.forth + use.back == 1; }, "is not closed:", "are open",
+     "each must belong to two triangles that face the same side: merge corners and close holes "
+     "(Blender: Mesh > Clean Up > Merge by Distance, Fill Holes)"},
+    {[](const EdgeUse& use) { return (use.forth + use.back) % 2 != 0; },
+     "is not one surface:", "belong to three triangles or more",
+     "each must belong to two: remove what lies inside (Blender: Select > All by Trait > Interior "
+     "Faces)"},
+    {[](const EdgeUse& use) { return use.forth != use.back; }, "has no holes, but along",
+     "triangles are turned against their neighbours",
+     "all must be counter-clockwise seen from outside (Blender: Mesh > Normals > Recalculate "
+     "Outside)"}};
+
+/// Throws ModelError with what an open surface has: holes, triangles within, or turned ones.
 [[noreturn]] void RefuseOpen(const std::filesystem::path& file, const TriangleMesh& mesh,
                              const Edges& edges) {
-  const auto is_open = [](const EdgeUse& use) { return (use.forth + use.back) % 2 != 0; };
-  const bool holes = std::ranges::any_of(edges, [&](const auto& e) { return is_open(e.second); });
-  int count = 0;
-  Vector3d p = Vector3d::Zero();
-  for (const auto& [edge, use] : edges)
-    if (holes ? is_open(use) : use.forth != use.back)
-      if (++count == 1) p = 0.5 * (mesh.vertices[edge.first] + mesh.vertices[edge.second]);
+  const OpenSurface* found = kOpenSurfaces;
+  const auto wrong = [&](const auto& edge) { return found->is_wrong(edge.second); };
+  while (std::ranges::none_of(edges, wrong)) ++found;  // the last has some: it is not closed
+  const auto count = std::ranges::count_if(edges, wrong);
+  const auto& [a, b] = std::ranges::find_if(edges, wrong)->first;
+  const Vector3d p = 0.5 * (mesh.vertices[a] + mesh.vertices[b]);
   throw ModelError(fmt::format(
       "{}: mesh {} {} of {} edges {}, the first at ({:.4g}, {:.4g}, {:.4g}); {}", file.string(),
-      holes ? "is not closed:" : "has no holes, but along", count, edges.size(),
-      holes ? "are open" : "triangles are turned against their neighbours", p.x(), p.y(), p.z(),
-      holes ? "each must belong to two triangles that face the same side: merge corners and close "
-              "holes (Blender: Mesh > Clean Up > Merge by Distance, Fill Holes)"
-            : "all must be counter-clockwise seen from outside (Blender: Mesh > Normals > "
-              "Recalculate Outside)"));
+      found->is, count, edges.size(), found->what, p.x(), p.y(), p.z(), found->cure));
 }
 
 /// Makes the surface closed by triangles that have an area. Throws ModelError where it is not

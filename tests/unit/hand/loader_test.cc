@@ -299,8 +299,13 @@ TEST_F(LoaderTest, RefusesOpenAndInsideOutMeshes) {
   EditBall("<sphere radius=\"0.025\"/>", "<mesh filename=\"tetra.obj\"/>");
   Write("objects/tetra.obj",
         Replaced(Replaced(kTetrahedron, "f 2 3 4\n", ""), "f 1 3 2\n", "f 1 3 2\nf 1 2 3\n"));
-  ExpectRefused({"tetra.obj", "not closed: 4 of 6 edges are open, the first at (0, 0.015, 0)",
+  ExpectRefused({"tetra.obj", "not closed: 2 of 6 edges are open, the first at (0, 0.015, 0.015)",
                  "two triangles", "Fill Holes"});
+  // A face within: the one on which two tetrahedra meet.
+  Write("objects/tetra.obj",
+        std::string(kTetrahedron) + "v 0.03 0.03 0.03\nf 2 3 5\nf 3 4 5\nf 4 2 5\n");
+  ExpectRefused({"tetra.obj", "not one surface: 3 of 9 edges belong to three triangles or more",
+                 "Interior Faces"});
   Write("objects/tetra.obj", Replaced(kTetrahedron, "f 2 3 4\n", "f 2 4 3\n"));
   ExpectRefused({"tetra.obj",
                  "mesh has no holes, but along 3 of 6 edges triangles are turned against their "
