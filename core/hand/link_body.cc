@@ -81,9 +81,9 @@ std::string WhyTooHeavy(const Link& link) {
   const double volume = LinkSolid(link.shapes).volume;
   if (link.mass <= kMostDensity * volume) return "";
   return fmt::format(
-      "<mass> = {:.4g} kg in {:.4g} cm³ of <collision> is a density of {:.4g} kg/m³; nothing has "
+      "<mass> = {:.4g} kg in {:.4g} cm³ of <collision> is a density of {}; nothing has "
       "more than {:g} (grams for kilograms, or too small a shape?)",
-      link.mass, 1e6 * volume, link.mass / volume, kMostDensity);
+      link.mass, 1e6 * volume, DensityText(link.mass / volume), kMostDensity);
 }
 
 void InventBody(Link* link) {

@@ -20,12 +20,13 @@ namespace {
 class ObjectReader {
  public:
   ObjectReader(const std::filesystem::path& path, const LoadOptions& options, ModelReport* report,
-               ObjectFacts* facts, const Matrix3d& R_OL)
+               ObjectFacts* facts, const Matrix3d& R_OL, Inertia inertia)
       : problems_(path.string(), report),
         file_(ReadUrdf(path, &problems_)),
         options_(options),
         facts_out_(facts),
-        R_OL_(R_OL) {}
+        R_OL_(R_OL),
+        as_told_(inertia == Inertia::kAsTold) {}
 
   ObjectModel Read() {
     problems_.ThrowIfAny();
@@ -64,6 +65,10 @@ class ObjectReader {
     else if (!(body.inertial->mass > 0) && summed_)
       problems_.Add(body.inertial->line, "{}: <mass> = {:.6g}; must be > 0", element_,
                     body.inertial->mass);
+    else if (const double mass = body.inertial->mass;
+             summed_ && !(mass >= kLeastObjectMass && mass <= kMostObjectMass))
+      problems_.Add(body.inertial->line, "{}: <mass> = {:.6g}; allowed {:g} .. {:g} kg", element_,
+                    mass, kLeastObjectMass, kMostObjectMass);
     return problems_.count() == before && body.inertial->mass > 0;
   }
 
@@ -142,12 +147,16 @@ class ObjectReader {
     if (from_shape_) {
       const Solid solid = ObjectSolid(object_);
       object_.I_OCom = solid.inertia * (object_.mass / solid.volume);
-    } else if (!inertial_.has_inertia) {
+    } else if (!inertial_.has_inertia && !as_told_) {
       return computes("<inertial> has no <inertia>");
     }
+    facts_.inertia_told = from_shape_ || inertial_.has_inertia;
     if (!summed_) return;
+    if (as_told_) return;
     if (const std::string why = WhyNoInertia(object_.I_OCom); !why.empty()) return computes(why);
     if (!whole) return;
+    if (const std::string why = WhyUnlikely(object_); !why.empty())
+      problems_.Warn(line, element_, why + "; --inertia-from-shape computes it");
     for (const Impossible& reason : WhyNoBody(object_)) {
       if (options_.force)
         problems_.Warn(line, element_, reason.why + "; taken because of --force");
@@ -166,6 +175,7 @@ class ObjectReader {
   ObjectFacts* facts_out_;
   ObjectFacts facts_;
   Matrix3d R_OL_;
+  bool as_told_;             // whatever the inertia
   bool summed_ = false;      // its links, without a problem
   bool from_shape_ = false;  // centre and inertia
   std::string element_;
@@ -177,12 +187,13 @@ class ObjectReader {
 }  // namespace
 
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options,
-                           ModelReport* report, ObjectFacts* facts, const Matrix3d& R_OL) {
-  return ObjectReader(urdf_file, options, report, facts, R_OL).Read();
+                           ModelReport* report, ObjectFacts* facts, const Matrix3d& R_OL,
+                           Inertia inertia) {
+  return ObjectReader(urdf_file, options, report, facts, R_OL, inertia).Read();
 }
 
 ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options,
-                           ModelReport* report, ObjectFacts* facts) {
+                           ModelReport* report, ObjectFacts* facts, Inertia inertia) {
   std::filesystem::path toml_file = urdf_file;
   toml_file.replace_extension(".toml");
   std::error_code ignored;
@@ -198,14 +209,14 @@ ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions o
     // A misspelt flag, say: the URDF is not blamed for what the flags would mend.
     if (file->count() > 0) options.inertia_from_shape = options.force = true;
     if (const toml::node* node = root.get("friction"))
-      friction = file->Number(*node, "friction", 1e-3, 1);
+      friction = file->Number(*node, "friction", kLeastFriction, kMostFriction);
     if (root.contains("rotation_deg"))
       R_OL = FromRotationVector(file->Vector(root, "rotation_deg", 360) * M_PI / 180)
                  .toRotationMatrix();
   }
   ObjectModel model;
   try {
-    model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL);
+    model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL, inertia);
   } catch (const ModelError& error) {
     if (!file) throw;
     file->Add(error);

@@ -9,6 +9,10 @@
 
 namespace regrasp {
 
+/// What an object may have, as its file, as a parameter and as a saved state.
+inline constexpr double kLeastFriction = 1e-3, kMostFriction = 1;
+inline constexpr double kLeastObjectMass = 1e-4, kMostObjectMass = 100;  ///< [kg]
+
 struct ObjectModel {
   /// As run files number them; 2 was a capsule.
   enum class Kind { kSphere = 0, kBox = 1, kMesh = 3 };
@@ -21,7 +25,7 @@ struct ObjectModel {
   double mass = 0.08;                        ///< [kg]
   Matrix3d I_OCom =
       Matrix3d::Zero();   ///< inertia about the origin, which is the centre of mass [kg m²]
-  double friction = 0.8;  ///< Coulomb coefficient of every contact, (0, 1]
+  double friction = 0.8;  ///< Coulomb coefficient of every contact, kLeastFriction .. 1
   double bounding_radius = 0.025;  ///< farthest surface point from the origin [m]
 };
 

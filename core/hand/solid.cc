@@ -244,6 +244,26 @@ std::string WhyNoInertia(const Matrix3d& inertia) {
   return "";
 }
 
+std::string DensityText(double density) {
+  return density < 1000 ? fmt::format("{:.4g} kg/m³", density)
+                        : fmt::format("{:.0f} kg/m³", density);
+}
+
+std::string WhyUnlikely(const ObjectModel& object) {
+  const auto moments = [](const Matrix3d& I) -> Vector3d {
+    return Eigen::SelfAdjointEigenSolver<Matrix3d>(I, Eigen::EigenvaluesOnly).eigenvalues();
+  };
+  constexpr double kShare = 0.1;
+  const Solid solid = ObjectSolid(object);
+  const Vector3d told = moments(object.I_OCom),
+                 uniform = moments(solid.inertia) * (object.mass / solid.volume);
+  if ((told.array() >= kShare * uniform.array()).all()) return "";
+  return fmt::format(
+      "<inertia> has the principal moments {:.4g}, {:.4g}, {:.4g} kg m²; a homogeneous body of "
+      "this shape and mass has {:.4g}, {:.4g}, {:.4g}",
+      told[0], told[1], told[2], uniform[0], uniform[1], uniform[2]);
+}
+
 std::vector<Impossible> WhyNoBody(const ObjectModel& object) {
   const auto largest = [](const Matrix3d& I) {
     return Eigen::SelfAdjointEigenSolver<Matrix3d>(I, Eigen::EigenvaluesOnly).eigenvalues()[2];
@@ -253,10 +273,10 @@ std::vector<Impossible> WhyNoBody(const ObjectModel& object) {
   const double density = object.mass / solid.volume;
   if (!(density >= kLeastDensity && density <= kMostDensity))
     reasons.push_back(
-        {fmt::format(
-             "<mass> = {:.4g} kg in {:.4g} cm³ is a density of {:.4g} kg/m³; allowed {:g} .. "
-             "{:g} (grams for kilograms, or another scale?)",
-             object.mass, solid.volume * 1e6, density, kLeastDensity, kMostDensity),
+        {fmt::format("<mass> = {:.4g} kg in {:.4g} cm³ is a density of {}; allowed {:g} .. "
+                     "{:g} (grams for kilograms, or another scale?)",
+                     object.mass, solid.volume * 1e6, DensityText(density), kLeastDensity,
+                     kMostDensity),
          false});
   if (object.kind == ObjectModel::Kind::kMesh && OutsideHull(object.vertices_O))
     reasons.push_back(

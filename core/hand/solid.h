@@ -46,6 +46,9 @@ std::string WhyNoInertia(const Matrix3d& inertia);
 /// Densities that an object may have [kg/m³]: foam is 10 to 30, osmium 22 600.
 inline constexpr double kLeastDensity = 10, kMostDensity = 25000;
 
+/// "1222 kg/m³": four digits or more, never a power of ten.
+std::string DensityText(double density);
+
 /// Why this object cannot be; nothing where it can. `changed_by_shape`: computing centre and
 /// inertia from the shape mends it.
 struct Impossible {
@@ -55,5 +58,9 @@ struct Impossible {
 /// The rules: density, largest moment above m R² (R: farthest surface point
 /// from the centre of mass), centre of mass outside the convex hull.
 std::vector<Impossible> WhyNoBody(const ObjectModel& object);
+
+/// Why this object is hardly like that, or "": a principal moment below a tenth of a homogeneous
+/// body's of this shape and mass. A heavy core may be the reason, so that it is no error.
+std::string WhyUnlikely(const ObjectModel& object);
 
 }  // namespace regrasp

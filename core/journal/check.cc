@@ -175,22 +175,18 @@ void CheckObject(const ObjectModel& object) {
   const double last = static_cast<double>(object.vertices_O.size()) - 1;
   for (const Eigen::Vector3i& triangle : object.triangles)
     for (int i = 0; i < 3; ++i) CheckRange("triangles", triangle[i], 0, last);
-  CheckRange("mass of the object", object.mass, 1e-9, kMaxMass);
+  CheckRange("mass of the object", object.mass, kLeastObjectMass, kMostObjectMass);
   CheckInertia("I_OCom", object.I_OCom);
-  CheckRange("friction", object.friction, 0, 1);
+  CheckRange("friction", object.friction, kLeastFriction, kMostFriction);
   CheckRange("bounding_radius", object.bounding_radius, 1e-6, 2 * kMaxLength);
 }
 
 void CheckParameters(const Parameters& parameters) {
   for (const ParameterInfo& info : ParameterTable()) {
-    // A model's own mass and friction may lie outside what `param.set` takes.
-    if (info.name.starts_with("object.")) continue;
     const Vector3d value = info.get(parameters);
     for (int i = 0; i < info.size(); ++i)
       CheckRange(std::string(info.name).c_str(), value[i], info.min, info.max);
   }
-  CheckRange("object.mass_kg", parameters.object.mass_kg, 1e-9, kMaxMass);
-  CheckRange("object.friction", parameters.object.friction, 0, 1);
 }
 
 }  // namespace

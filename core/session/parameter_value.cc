@@ -14,8 +14,14 @@ constexpr std::size_t kMostShown = 60;  // characters of a value in a message
 
 std::string Number(double value) {
   char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value + 0.0);  // no -0
   return {text, end};
+}
+
+std::string Listed(const std::vector<double>& numbers) {
+  std::string text = "[";
+  for (const double x : numbers) text.append(text.size() > 1 ? ", " : "").append(Number(x));
+  return text + "]";
 }
 
 /// The value as it was given, for messages.
@@ -29,16 +35,26 @@ std::string Shown(const GivenValue& given) {
   }
   const auto& numbers = std::get<std::vector<double>>(given);
   if (numbers.size() > 3) return std::to_string(numbers.size()) + " numbers";
-  std::string text;
-  for (const double x : numbers) text += (text.empty() ? "[" : ", ") + Number(x);
-  return text.empty() ? "[]" : text + "]";
+  return Listed(numbers);
+}
+
+/// A string that would be right without its quotes.
+bool IsQuotedNumber(const GivenValue& given) {
+  const std::string* word = std::get_if<std::string>(&given);
+  double number = 0;
+  if (!word || word->empty()) return false;
+  const char* end = word->data() + word->size();
+  const auto [rest, error] = std::from_chars(word->data(), end, number);
+  return error == std::errc() && rest == end;
 }
 
 [[noreturn]] void Refuse(const ParameterInfo& info, const GivenValue& given) {
   const std::string name(info.name);
   std::string message = name + " = " + Shown(given) + ": expected " + AllowedText(info);
   const bool scalar = info.type == ParameterType::kReal || info.type == ParameterType::kInteger;
-  if (scalar && !std::holds_alternative<double>(given))
+  if (scalar && IsQuotedNumber(given))
+    message = name + " is a number, and " + Shown(given) + " is text: leave out the quotes";
+  else if (scalar && !std::holds_alternative<double>(given))
     message = name + " is one number" +
               (info.type == ParameterType::kReal ? ", with a point" : " without fraction") +
               ", not " + Shown(given);
@@ -108,7 +124,7 @@ std::string ParameterText(const ParameterInfo& info, const Vector3d& value) {
     case ParameterType::kWord:
       return std::string(info.words[static_cast<std::size_t>(value.x())]);
     case ParameterType::kVector:
-      return "[" + Number(value.x()) + ", " + Number(value.y()) + ", " + Number(value.z()) + "]";
+      return Listed({value.x(), value.y(), value.z()});
     case ParameterType::kReal:
     case ParameterType::kInteger:
       break;
@@ -127,9 +143,9 @@ std::string AllowedText(const ParameterInfo& info) {
     return text;
   }
   std::string text = LeastText(info.min) + " ... " + MostText(info.max);
-  if (!info.unit.empty()) text += " " + std::string(info.unit);
-  if (info.type == ParameterType::kInteger) return "an integer, " + text;
-  return info.type == ParameterType::kVector ? "3 numbers, each " + text : text;
+  if (!info.unit.empty()) text.append(" ").append(info.unit);
+  if (info.type == ParameterType::kInteger) return std::string("an integer, ").append(text);
+  return info.type == ParameterType::kVector ? std::string("3 numbers, each ").append(text) : text;
 }
 
 }  // namespace regrasp

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/hand/object_model.h"
 #include "core/hand/scenario.h"
 #include "core/session/parameter_row.h"
 
@@ -229,8 +230,8 @@ constexpr auto kTable = std::to_array<ParameterInfo>({
   Row("gait.yielding_cap", "", 1, 10, "Move: a finger that found no room by sliding presses with at most this times gait.slide_force.", kMeasured, [](P& p) { return &p.gait.yielding_cap; }),
   Row("gait.rest_s", "s", 0, 5, "Move: rest at its end, until the object has caught up with its reference.", kMeasured, [](P& p) { return &p.gait.rest_s; }),
   Row("gravity", "m/s2", -50, 50, "Gravity in W: turning it is tilting the palm.", kOurs, [](P& p) { return &p.gravity_W; }),
-  Row("object.friction", "", 0.01, 1, "True friction coefficient of every contact.", "object model", [](P& p) { return &p.object.friction; }),
-  Row("object.mass_kg", "kg", 0.001, 2, "True mass of the object.", "object model", [](P& p) { return &p.object.mass_kg; }),
+  Row("object.friction", "", kLeastFriction, kMostFriction, "True friction coefficient of every contact.", "object model", [](P& p) { return &p.object.friction; }),
+  Row("object.mass_kg", "kg", kLeastObjectMass, kMostObjectMass, "True mass of the object.", "object model", [](P& p) { return &p.object.mass_kg; }),
   Row("start.displacement_m", "m", 0, 0.01, "Every fingertip arrives so far from its place, along the surface in a direction drawn from the seed; takes effect at reset.", kOurs, [](P& p) { return &p.start.displacement_m; }),
   Row("start.joint_sigma_rad", "rad", 0, 0.2, "Spread of the start posture over seeds, per joint; takes effect at reset.", kOurs, [](P& p) { return &p.start.joint_sigma_rad; }),
   Row("start.object_sigma_m", "m", 0, 0.02, "Spread of the object's start position over seeds, per axis; takes effect at reset.", kOurs, [](P& p) { return &p.start.object_sigma_m; }),

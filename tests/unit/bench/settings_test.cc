@@ -32,7 +32,7 @@ TEST(Settings, AreWhatTheTableAllows) {
   EXPECT_EQ(Read("gait.hop=false"), "false");
   EXPECT_EQ(Read("gravity=0,-9.81,0"), "[0, -9.81, 0]");
   EXPECT_EQ(Read("gait.mode=7"), "gait.mode = 7: expected exploring or returning");
-  EXPECT_EQ(Read("object.friction=2"), "object.friction = 2 is out of range; allowed: 0.01 ... 1");
+  EXPECT_EQ(Read("object.friction=2"), "object.friction = 2 is out of range; allowed: 0.001 ... 1");
   for (const char* bad : {"gait.mode=", "gait.mode=walk", "gait.lead=nan", "gait.lead=inf",
                           "gait.lead=1e9", "gait.lead=0.25x", "gait.lead=0.2,0.3", "gait.lead",
                           "gait.hop=2", "gravity=0,0", "gravity=0,0,", "gravity=9", "gate=1", "="})

@@ -1,5 +1,6 @@
 /// What is wrong with an object, all in one list.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -48,6 +49,40 @@ TEST_F(ObjectProblems, AreToldInOneList) {
       << told[2];
   EXPECT_TRUE(told[3].starts_with("ball.urdf:3: link \"object\": ")) << told[3];
   EXPECT_TRUE(told[3].ends_with("gone.obj: mesh file not found")) << told[3];
+}
+
+TEST_F(ObjectProblems, MomentsThatAreFarTooSmallAreToldOnly) {
+  const auto warnings = [&] {
+    ModelReport report;
+    LoadObjectFile(root_ / "objects/ball.urdf", {}, &report);
+    return report.warnings;
+  };
+  EXPECT_TRUE(warnings().empty());
+  std::string tiny = kInertia;
+  for (std::size_t at; (at = tiny.find("2e-5")) != std::string::npos;) tiny.replace(at, 4, "1e-9");
+  EditBall(kInertia, tiny);
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_NE(warnings()[0].text.find("1e-09 kg m²; a homogeneous body of this shape and mass has "
+                                    "2e-05"),
+            std::string::npos)
+      << warnings()[0].text;
+}
+
+// What the parameter and a saved state take.
+TEST_F(ObjectProblems, FrictionAndMassHaveTheRangeOfTheirParameters) {
+  LoadOptions force;
+  force.force = true;
+  for (const double mass : {kLeastObjectMass, kMostObjectMass}) {
+    EditBall(kMass, fmt::format("<mass value=\"{}\"/>", mass));
+    EXPECT_EQ(LoadObjectFile(root_ / "objects/ball.urdf", force).mass, mass);
+  }
+  for (const char* mass : {"0.00009", "101"}) {
+    EditBall(kMass, fmt::format("<mass value=\"{}\"/>", mass));
+    const Lines told = Told();
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_TRUE(told[0].ends_with("; allowed 0.0001 .. 100 kg")) << told[0];
+    EXPECT_THROW(LoadObjectFile(root_ / "objects/ball.urdf", force), ModelError);
+  }
 }
 
 // A misspelt flag: what it would have mended is not told.

@@ -86,10 +86,12 @@ TEST(ParameterValue, ReadsWordsBooleansAndTheirFormerNumbers) {
 TEST(ParameterValue, SaysWhatIsWrongAndWhatIsAllowed) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(Complaint("object.friction", "0,5"),
-            "object.friction is one number, with a point, not '0,5'|0.01 ... 1|");
+            "object.friction is one number, with a point, not '0,5'|0.001 ... 1|");
+  EXPECT_EQ(Complaint("object.friction", std::string("0.5")),
+            "object.friction is a number, and '0.5' is text: leave out the quotes|0.001 ... 1|");
   EXPECT_EQ(Complaint("object.friction", std::vector<double>{1, 1, 1}),
-            "object.friction is one number, with a point, not [1, 1, 1]|0.01 ... 1|");
-  EXPECT_EQ(Complaint("object.friction", 7.0), "object.friction = 7 is out of range|0.01 ... 1|");
+            "object.friction is one number, with a point, not [1, 1, 1]|0.001 ... 1|");
+  EXPECT_EQ(Complaint("object.friction", 7.0), "object.friction = 7 is out of range|0.001 ... 1|");
   EXPECT_NE(Complaint("object.friction", kNan), "");
   EXPECT_NE(Complaint("object.friction", true), "");
   EXPECT_EQ(Complaint("exploration.max_cycles", 1.5),
