@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/common/count_text.h"
 #include "core/common/limits.h"
 #include "core/hand/urdf_values.h"
 
@@ -75,9 +76,8 @@ std::vector<int> HandTree::DriversTo(int to) const {
 
 std::string HandTree::FingerFault(std::size_t drivers, const std::string& tip_link) {
   if (drivers > 0 && drivers <= std::size_t{kMaxFingerJoints}) return "";
-  return fmt::format(
-      "{} revolute joints between root and \"{}\", coupled ones not counted; allowed 1 .. {}",
-      drivers, tip_link, kMaxFingerJoints);
+  return fmt::format("{} between root and \"{}\", coupled ones not counted; allowed 1 .. {}",
+                     CountText(drivers, "revolute joint"), tip_link, kMaxFingerJoints);
 }
 
 std::size_t HandTree::FingersBelow(int j) const {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "core/common/count_text.h"
+
 namespace regrasp {
 
 void JointValues::Fill(const UrdfJoint& in, Joint* joint) {
@@ -37,9 +39,10 @@ void JointValues::TellDefaults() const {
   const auto tell = [&](const std::vector<std::string>& joints, const char* what, double taken,
                         const char* unit) {
     if (!joints.empty())
-      problems_->Warn(0, "",
-                      fmt::format("{} for {} joints ({}); {:g} {} is taken", what, joints.size(),
-                                  fmt::join(joints, ", "), taken, unit));
+      problems_->Warn(
+          0, "",
+          fmt::format("{} for {} ({}); {:g} {} is taken", what, CountText(joints.size(), "joint"),
+                      fmt::join(joints, ", "), taken, unit));
   };
   tell(undamped_, "<dynamics damping> is missing", layout_.damping, "N m s/rad");
   tell(raised_, "<dynamics damping> is less than the scenario's least", layout_.least_damping,
@@ -47,9 +50,10 @@ void JointValues::TellDefaults() const {
   tell(unpowered_, "<limit> effort is 0", kDefaultEffort, "N m");
   if (!slow_.empty())
     problems_->Warn(0, "",
-                    fmt::format("<dynamics damping> [N m s/rad] lets {} joints ({}) turn by less "
-                                "than 0.1 rad/s with their whole effort: they hardly move",
-                                slow_.size(), fmt::join(slow_, ", ")));
+                    fmt::format("<dynamics damping> [N m s/rad] lets {} ({}) turn by less than 0.1 "
+                                "rad/s with their whole effort: {}",
+                                CountText(slow_.size(), "joint"), fmt::join(slow_, ", "),
+                                slow_.size() == 1 ? "it hardly moves" : "they hardly move"));
 }
 
 }  // namespace regrasp

@@ -90,7 +90,7 @@ TEST_F(PublishedJoints, ReportsWhatItTook) {
   ASSERT_EQ(loaded.report.warnings.size(), 2u);
   EXPECT_NE(loaded.report.warnings[0].Line().find("mini.urdf:12: joint \"A\": a continuous joint"),
             std::string::npos);
-  EXPECT_NE(loaded.report.warnings[1].text.find("<dynamics damping> is missing for 1 joints (B)"),
+  EXPECT_NE(loaded.report.warnings[1].text.find("<dynamics damping> is missing for 1 joint (B)"),
             std::string::npos);
 }
 
