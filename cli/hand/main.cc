@@ -39,13 +39,10 @@ void TellFailure(const Options& options, const std::string& cause, const std::st
   fmt::print(stderr, "{}\n", JsonText(Json{{"error", error}}));
 }
 
-bool NamesNoFile(const std::string& cause) {
-  return cause.ends_with("file not found") || cause.starts_with("there is no model");
-}
-
 /// What may help against what a file is refused for: the flags that the refusal names.
-std::string NextFor(const std::string& cause) {
-  if (NamesNoFile(cause)) return "give the path of a .urdf or .toml file";
+std::string NextFor(const ModelError& error) {
+  const std::string cause = error.what();
+  if (error.names_no_model()) return "give the path of a .urdf or .toml file";
   std::string flags;
   for (const char* flag : {" --fill-missing-meshes", " --inertia-from-shape"})
     if (cause.find(flag) != std::string::npos) flags += flag;
@@ -86,9 +83,8 @@ int Main(int argc, char** argv) {
     TellFailure(options, ShownText(failure.what()), failure.next);
     return static_cast<int>(failure.code);
   } catch (const ModelError& error) {
-    const std::string cause = error.what();
-    TellFailure(options, cause, NextFor(cause), error.problems.Messages());
-    return static_cast<int>(NamesNoFile(cause) ? ExitCode::kNotFound : ExitCode::kFailed);
+    TellFailure(options, error.what(), NextFor(error), error.problems.Messages());
+    return static_cast<int>(error.names_no_model() ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& error) {
     TellFailure(options, ShownText(error.what()), "regrasp help hand " + options.verb);
     return static_cast<int>(ExitCode::kIo);

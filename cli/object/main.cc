@@ -48,35 +48,26 @@ std::vector<std::string> Lines(const std::string& message) {
   return lines;
 }
 
-/// A body that is refused is shown as far as it can be read: with --force, else also with
-/// --inertia-from-shape. Throws ModelError.
+/// A body that is refused is shown as the file tells it. Throws ModelError where that cannot be.
 Shown Load(const std::string& name, LoadOptions options) {
   Shown shown;
   shown.file = FindModel(name, "objects", ModelSearchPath(""));
-  const auto load = [&](const LoadOptions& with) {
+  const auto load = [&](Inertia inertia) {
     ModelReport report;
-    shown.object = LoadObjectFile(shown.file, with, &report, &shown.facts);
+    shown.object = LoadObjectFile(shown.file, options, &report, &shown.facts, inertia);
     for (const ModelWarning& warning : report.warnings) shown.warnings.push_back(warning.Line());
   };
   try {
-    load(options);
+    load(Inertia::kOfABody);
     return shown;
   } catch (const ModelError& error) {
     shown.refusals = Lines(error.what());
     options.force = true;
     try {
-      load(options);
+      load(Inertia::kAsTold);
     } catch (const ModelError&) {
-      options.inertia_from_shape = true;
-      try {
-        load(options);
-      } catch (const ModelError&) {
-        throw error;
-      }
+      throw error;
     }
-    std::erase_if(shown.warnings, [](const std::string& warning) {  // what the refusals say
-      return warning.ends_with("taken because of --force");
-    });
   }
   return shown;
 }
@@ -111,8 +102,9 @@ Json Describe(const Shown& shown) {
   const Solid solid = ObjectSolid(o);
   const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(o.I_OCom);
   const double density = o.mass / solid.volume;
-  Json inertia = Json::array(), axes = Json::array();
-  for (int k = 0; k < 3; ++k) {
+  Json inertia, moments, axes;
+  if (shown.facts.inertia_told) moments = ToJson(principal.eigenvalues());
+  for (int k = 0; shown.facts.inertia_told && k < 3; ++k) {
     inertia.push_back(ToJson(o.I_OCom.row(k)));
     axes.push_back(ToJson(principal.eigenvectors().col(k)));
   }
@@ -134,7 +126,7 @@ Json Describe(const Shown& shown) {
           {"centre_of_mass_m", ToJson(shown.facts.p_LCom)},
           {"middle_of_volume_m", ToJson(shown.facts.p_LCom + solid.centre)},
           {"inertia_kg_m2", inertia},
-          {"principal_moments_kg_m2", ToJson(principal.eigenvalues())},
+          {"principal_moments_kg_m2", moments},
           {"principal_axes", axes},
           {"homogeneous_moments_kg_m2", ToJson(Moments(solid.inertia * density))},
           {"warnings", shown.warnings},
@@ -155,17 +147,19 @@ std::vector<std::string> Text(const Json& json) {
   const auto number = [&](const char* key) { return json[key].get<double>(); };
   std::vector<std::string> lines = {
       fmt::format("shape        {}, closed", json["shape"].get<std::string>()),
-      fmt::format("pieces       {} of {} <collision>, {} triangles", json["pieces"].get<int>(),
+      fmt::format("pieces       {} in {} <collision>, {} triangles", json["pieces"].get<int>(),
                   json["collisions"].get<int>(), json["triangles"].get<int>()),
       "size         " + Three(json["size_m"], 1e3) + " mm",
       fmt::format("reach        {:.4g} mm from the centre of mass",
                   number("bounding_radius_m") * 1e3),
       fmt::format("mass         {:.4g} g", number("mass_kg") * 1e3),
       fmt::format("volume       {:.4g} cm³", number("volume_m3") * 1e6),
-      fmt::format("density      {:.4g} kg/m³", number("density_kg_m3")),
+      "density      " + DensityText(number("density_kg_m3")),
       "centre       " + Three(json["centre_of_mass_m"], 1e3, true) + " mm in the file",
       "  of volume  " + Three(json["middle_of_volume_m"], 1e3, true) + " mm",
-      "moments      " + Three(json["principal_moments_kg_m2"], 1e6) + " kg mm²",
+      "moments      " + (json["principal_moments_kg_m2"].is_null()
+                             ? "none in the file"
+                             : Three(json["principal_moments_kg_m2"], 1e6) + " kg mm²"),
       "  if uniform " + Three(json["homogeneous_moments_kg_m2"], 1e6) + " kg mm²",
       fmt::format("friction     {:g}", number("friction"))};
   if (number("overlap_m3") > 0)
@@ -227,9 +221,7 @@ int Main(int argc, char** argv) {
       return Fail(given, "regrasp-object show FILE is the only way to run this", ExitCode::kUsage);
     return static_cast<int>(Show(words[1], given));
   } catch (const ModelError& e) {
-    const bool missing = std::string_view(e.what()).find("not found") != std::string_view::npos ||
-                         std::string_view(e.what()).starts_with("there is no model");
-    return Fail(given, e.what(), missing ? ExitCode::kNotFound : ExitCode::kFailed);
+    return Fail(given, e.what(), e.names_no_model() ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& e) {
     return Fail(given, ShownText(e.what()), ExitCode::kIo);
   }

@@ -16,6 +16,8 @@ class ModelError : public std::runtime_error {
   explicit ModelError(ProblemList list)
       : std::runtime_error(list.Text()), problems(std::move(list)) {}
   ProblemList problems;
+  /// Whether all that is wrong is that a model's own file, or its directory, is not there.
+  bool names_no_model() const;
 };
 
 }  // namespace regrasp
