@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cli/hand/hand_command.h"
+#include "core/common/count_text.h"
 #include "core/files/names.h"
 #include "core/posture/hand_guess.h"
 #include "core/session/few_fingers.h"
@@ -186,8 +187,7 @@ std::string SharedMotors(const HandModel& hand) {
 }
 
 std::string DrivenJoints(const Finger& finger) {
-  const std::size_t count = finger.joints.size();
-  return fmt::format("{} driven joint{}", count, count == 1 ? "" : "s");
+  return CountText(finger.joints.size(), "driven joint");
 }
 
 std::string_view FewFingers(int fingers) {
@@ -225,6 +225,7 @@ Answer CheckHand(const Options& options) {
   for (const Link& link : hand.links) mass += link.mass;
 
   Answer answer;
+  if (!choice.works) answer.code = ExitCode::kFailed;
   answer.json = {{"urdf", loaded.urdf},
                  {"scenario", loaded.scenario.empty() ? Json() : Json(loaded.scenario)},
                  {"hand", hand.name},
@@ -235,18 +236,23 @@ Answer CheckHand(const Options& options) {
                  {"own_contacts", own},
                  {"stepper", stepper},
                  {"stepper_reason", choice.reason},
+                 {"moves", choice.works},
                  {"warnings", warnings}};
   for (int j = 0; j < hand.num_joints() + hand.num_coupled; ++j)
     answer.json["joints"].push_back(JointJson(hand, j));
   answer.text = fmt::format(
-      "{}: {} fingers, {} driven joints, {} coupled, {} links, {:.0f} g\n  {}\n  scenario: {}",
-      ShownText(hand.name), hand.num_fingers(), hand.num_joints(), hand.num_coupled,
-      hand.links.size(), 1e3 * mass, ShownText(loaded.urdf),
+      "{}: {}, {}, {} coupled, {}, {:.0f} g\n  {}\n  scenario: {}", ShownText(hand.name),
+      CountText(hand.num_fingers(), "finger"), CountText(hand.num_joints(), "driven joint"),
+      hand.num_coupled, CountText(hand.links.size(), "link"), 1e3 * mass, ShownText(loaded.urdf),
       loaded.scenario.empty() ? "none    (regrasp hand new)" : ShownText(loaded.scenario));
   for (const std::string& note : loaded.notes)
     if (!note.starts_with("finger ")) answer.text += "\n  " + note;
   answer.text += FingersText(hand) + FitsText(loaded.model.report);
-  answer.text += fmt::format("\nstepper: {} ({})", stepper, choice.reason);
+  answer.text += choice.works ? fmt::format("\nstepper: {} ({})", stepper, choice.reason)
+                              : fmt::format(
+                                    "\nstepper: none: {}; look at its masses, inertias and "
+                                    "armature_kg_m2",
+                                    choice.reason);
   for (const std::string& warning : warnings) answer.text += "\nwarning: " + warning;
   if (options.Has("--output")) {
     DrawHand(loaded.model, loaded.scenario, options.Text("--output"));

@@ -38,6 +38,7 @@ class HandReader {
                                                            coupling.offset};
     tree_.Check(&problems_);
     problems_.ThrowIfAny();
+    CheckLengths();
     fingertips_.emplace(tree_, layout_);
     StartLink(file_.root, -1, layout_.X_HR);
     for (const auto& finger : layout_.fingers) ReadFinger(finger);
@@ -91,6 +92,17 @@ class HandReader {
                     in.inertial->mass);
     else if (in.inertial)
       AddBodyTo(link, *in.inertial, X_LG);
+  }
+
+  /// What joints are told in another unit.
+  void CheckLengths() {
+    constexpr double kFarthest = 2;  // [m]: a hand may stand on an arm, or a table
+    for (const UrdfJoint& joint : file_.joints)
+      if (const double far = joint.X_PJ.translation().norm(); far > kFarthest)
+        problems_.Add(joint.line,
+                      "{}: <origin> is {:.4g} m from the parent link; allowed are at most {:g} m; "
+                      "lengths are in metres",
+                      JointElement(joint.name), far, kFarthest);
   }
 
   bool Added(int joint) const { return std::ranges::find(order_, joint) != order_.end(); }

@@ -16,7 +16,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLargestLink = 1;  // [m]; a larger mesh has another unit
+constexpr double kLargestLink = 1;  // [m]; what is larger, or farther off, has another unit
+
+/// The longest side of a shape that is no mesh.
+double Size(const UrdfGeometry& geometry) {
+  switch (geometry.kind) {
+    case UrdfGeometry::Kind::kSphere:
+      return 2 * geometry.radius;
+    case UrdfGeometry::Kind::kCylinder:
+      return std::max(2 * geometry.radius, geometry.length);
+    case UrdfGeometry::Kind::kBox:
+      return geometry.size.maxCoeff();
+    case UrdfGeometry::Kind::kMesh:
+      break;
+  }
+  return 0;
+}
 
 void Pose(const Isometry3d& X, Shape* shape) {
   shape->a_L = X * shape->a_L;
@@ -52,6 +67,7 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
   for (const UrdfCollision& collision : in.collisions) {
     const Isometry3d X = X_LG * collision.X_LG;
     const UrdfGeometry& geometry = collision.geometry;
+    if (!CheckSize(in, collision)) continue;
     Shape shape;
     switch (geometry.kind) {
       case UrdfGeometry::Kind::kSphere:
@@ -91,6 +107,19 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
     half_width = std::max(half_width, HalfWidth(shape));
   }
   return shapes;
+}
+
+bool HandShapes::CheckSize(const UrdfLink& in, const UrdfCollision& collision) {
+  const auto add = [&](const char* what, double length) {
+    problems_->Add(collision.geometry.line,
+                   "{}: <collision> {} {:.4g} m; allowed are at most {:g} m; lengths are in metres",
+                   LinkElement(in.name), what, length, kLargestLink);
+    return false;
+  };
+  if (const double size = Size(collision.geometry); size > kLargestLink)
+    return add("has a length of", size);
+  const double off = collision.X_LG.translation().norm();
+  return off <= kLargestLink || add("lies off its link by", off);
 }
 
 fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {

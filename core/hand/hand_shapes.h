@@ -28,6 +28,8 @@ class HandShapes {
   std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip);
 
  private:
+  /// Whether a shape is as small, and as near to its link, as those of hands are; else a problem.
+  bool CheckSize(const UrdfLink& in, const UrdfCollision& collision);
   /// Nothing where the file cannot be read, which is a problem.
   std::optional<Shape> OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
                               bool fingertip);

@@ -47,20 +47,29 @@ std::string Fall(const LoadedScenario& model, WorldConfig config) {
   return "";
 }
 
+/// A fault without its advice, which is the other step.
+std::string Cause(const std::string& fault) { return fault.substr(0, fault.find("; try ")); }
+
 }  // namespace
 
 StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& config) {
   if (model.hand.num_joints() == 0) return {Stepper::kFast, "the hand has no joints"};
   const Trial exact = Close(model, config, Stepper::kExact);
   const Trial fast = Close(model, config, Stepper::kFast);
-  if (exact.fault.empty() && !fast.fault.empty())
-    return {Stepper::kExact, "failed at load: the fast step, closing the hand: " + fast.fault};
+  if (!exact.fault.empty() && !fast.fault.empty())
+    return {Stepper::kFast,
+            "neither step can close the hand: the exact one: " + Cause(exact.fault) +
+                "; the fast one: " + Cause(fast.fault),
+            false};
+  if (!fast.fault.empty())
+    return {Stepper::kExact,
+            "failed at load: the fast step, closing the hand: " + Cause(fast.fault)};
   if (!exact.fault.empty())
-    return {Stepper::kFast, "failed at load: the exact step, closing the hand: " + exact.fault +
-                                (fast.fault.empty() ? "" : "; the fast one: " + fast.fault)};
+    return {Stepper::kFast,
+            "failed at load: the exact step, closing the hand: " + Cause(exact.fault)};
   const std::string fall = Fall(model, config);
   if (!fall.empty())
-    return {Stepper::kExact, "failed at load: the fast step, 1 s of free motion: " + fall};
+    return {Stepper::kExact, "failed at load: the fast step, 1 s of free motion: " + Cause(fall)};
   const double moved = (exact.q - model.scenario.q_preshape).cwiseAbs().maxCoeff();
   const double apart = (exact.q - fast.q).cwiseAbs().maxCoeff();
   const bool agree = apart <= kAgreement * std::max(moved, kMotion);

@@ -12,6 +12,7 @@ namespace regrasp {
 struct StepperChoice {
   Stepper stepper = Stepper::kFast;
   std::string reason;  ///< one line: what was found, with figures
+  bool works = true;   ///< whether one of them moves the hand at all
 };
 
 /// Closes the hand of a scenario with both steppers from its preshape: first in the air, then on

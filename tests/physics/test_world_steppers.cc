@@ -203,6 +203,17 @@ TEST(StepperChoice, TakesTheFastStepForAHandThatIsClosedFromTheBeginning) {
   EXPECT_EQ(choice.stepper, Stepper::kFast) << choice.reason;
 }
 
+TEST(StepperChoice, SaysWhereNeitherStepMovesTheHand) {
+  LoadedScenario dust = Shadow();
+  for (Link& link : dust.hand.links) link.mass = 1e-11, link.I_LCom = 1e-19 * Matrix3d::Identity();
+  for (Joint& joint : dust.hand.joints) joint.armature = joint.damping = 0;
+  const StepperChoice choice = ChooseStepper(dust, {});
+  EXPECT_FALSE(choice.works) << choice.reason;
+  EXPECT_TRUE(choice.reason.starts_with("neither step can close the hand: the exact one: "));
+  EXPECT_EQ(choice.reason.find("--stepper"), std::string::npos) << choice.reason;
+  EXPECT_TRUE(ChooseStepper(Shadow(), {}).works);
+}
+
 TEST(StepperChoice, TakesTheExactStepWhereTheFastOneIsOff) {
   WorldConfig broken;
   broken.contact_solver.max_sweeps = 0;  // contact forces stay zero: through the object

@@ -96,6 +96,21 @@ TEST_F(WildTest, GramsForKilogramsInALinkAreTold) {
   EXPECT_TRUE(told(LoaderTest::Load()));
 }
 
+// Nothing of a hand is as long, whatever it is: no line of a file in millimetres passes.
+TEST_F(WildTest, MillimetresAreToldOfEveryShapeAndOrigin) {
+  const std::pair<const char*, const char*> edits[] = {
+      {"radius=\"0.005\"", "radius=\"5\""},
+      {"length=\"0.02\"", "length=\"20\""},
+      {"size=\"0.01 0.01 0.04\"", "size=\"10 10 40\""},
+      {"<collision><geometry><box", "<collision><origin xyz=\"0 0 9\"/><geometry><box"},
+      {"<origin xyz=\"0 0 0.04\"/>", "<origin xyz=\"0 0 4\"/>"}};
+  for (const auto& [from, to] : edits) {
+    SCOPED_TRACE(to);
+    EditHand(from, to);
+    ExpectRefused({"mini.urdf:", "; allowed are at most ", " m; lengths are in metres"});
+  }
+}
+
 TEST_F(WildTest, ANegativeMassIsToldOnce) {
   EditHand("<mass value=\"0.01\"/>", "<mass value=\"-0.01\"/>");
   try {
