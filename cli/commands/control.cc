@@ -42,7 +42,9 @@ ExitCode Stop(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
     const Json &job = At(answer, "job"), &step = At(answer, "step");
-    if (!job.is_null())
+    if (!job.is_null() && At(answer, "begun") == false)
+      context.out().Line(fmt::format("job {} cancelled before it began", Plain(job)));
+    else if (!job.is_null())
       context.out().Line(fmt::format("job {} stopped; the hand keeps holding", Plain(job)));
     if (!step.is_null()) context.out().Line(fmt::format("job {} stopped: step", Plain(step)));
     if (job.is_null() && step.is_null()) context.out().Line("nothing to stop");
@@ -53,9 +55,14 @@ ExitCode Stop(Context& context, const Invocation& invocation) {
 ExitCode PauseOrResume(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    context.out().Line(fmt::format("{} at tick {}",
-                                   At(answer, "paused") == true ? "paused" : "running",
-                                   Plain(At(answer, "tick"))));
+    const bool paused = At(answer, "paused") == true;
+    const bool stands = !paused && At(answer, "clock") == "lockstep";
+    context.out().Line(fmt::format("{} at tick {}{}",
+                                   paused   ? "paused"
+                                   : stands ? "no longer paused"
+                                            : "running",
+                                   Plain(At(answer, "tick")),
+                                   stands ? "; in lockstep time goes on while a job runs" : ""));
   });
   return kOk;
 }

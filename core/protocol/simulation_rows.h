@@ -103,7 +103,7 @@ inline constexpr std::array kNoiseSet = {
               .max = 0.9,
               .default_text = "unchanged"},
     ParamSpec{.name = "dropout_gap_s",
-              .sentence = "mean length of such a gap; at least a sample",
+              .sentence = "mean length of such a gap; 0: a sample, which is the least",
               .unit = "s",
               .min = 0,
               .max = 1,
@@ -171,22 +171,28 @@ inline constexpr std::array kSimulationRows = {
                "stop the clock of the simulation; a step that runs ends",
                {},
                false,
-               "paused, tick"},
+               "paused, tick, clock (continuous, lockstep)"},
     MethodSpec{"push", "push", "push the object: a disturbance", kPush, false,
                "force_n, duration_s"},
     MethodSpec{"reset", "reset", "start a new run; parameters and noise levels stay", kReset, false,
                "seed, object, changed_parameters: {NAME: value} that stay, warnings [] (why "
                "this object cannot be grasped where it begins)"},
-    MethodSpec{
-        "resume", "resume", "let the clock of the simulation run again", {}, false, "paused, tick"},
-    MethodSpec{"step", "step", "advance a simulation that is paused, or stands still in lockstep",
-               kStep, true, "job"},
-    MethodSpec{"stop",
-               "stop",
-               "end the current job, or step, and keep holding",
+    MethodSpec{"resume",
+               "resume",
+               "let the clock of the simulation run again",
                {},
                false,
-               "job (the one that ends), or null; step (the job of the step that ends), or null"},
+               "paused, tick, clock"},
+    MethodSpec{"step", "step", "advance a simulation that is paused, or stands still in lockstep",
+               kStep, true, "job"},
+    MethodSpec{
+        "stop",
+        "stop",
+        "end the current job, or step, and keep holding",
+        {},
+        false,
+        "job (the one that ends), or null; step (the job of the step that ends), or null; begun "
+        "(false: the job ended before it began; null without a job)"},
 };
 
 }  // namespace regrasp::rows

@@ -111,6 +111,10 @@ void ControlLoop::TakeRequests() {
     taken_ = taken.number;
     switch (taken.request.kind) {
       case ControlRequest::Kind::kCommand:
+        if (taken.request.command.type == CommandType::kStop)
+          CancelWaiting(0, "stopped before it began");
+        if (taken.request.command.type == CommandType::kCancelJob)
+          CancelWaiting(taken.request.command.job, "cancelled before it began");
         commands_.push_back(std::move(taken));
         break;
       case ControlRequest::Kind::kReset:

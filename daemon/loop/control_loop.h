@@ -75,6 +75,9 @@ enum class ClockMode : std::uint8_t {
   kContinuous,  ///< always, unless paused
   kLockstep,    ///< while a job runs; what happens then depends on the commands alone
 };
+constexpr const char* ClockName(ClockMode clock) {
+  return clock == ClockMode::kLockstep ? "lockstep" : "continuous";
+}
 
 /// One published tick.
 struct Published {
@@ -155,6 +158,8 @@ class ControlLoop {
   void TakeRequests();
   void ApplyWaiting();
   void Reset(const ControlRequest& request);
+  /// Ends the jobs whose commands wait: that of `id`, or all where it is 0.
+  void CancelWaiting(std::int64_t id, const char* why);
   void CancelEverything(const char* why);
   void BeginRestore(ControlRequest request);
   void RestoreSome();

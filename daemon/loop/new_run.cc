@@ -13,20 +13,26 @@ constexpr std::int64_t kTicksPerSlice = 200;  // of a restore, between looks at 
 
 }  // namespace
 
+void ControlLoop::CancelWaiting(std::int64_t id, const char* why) {
+  std::erase_if(commands_, [&](const Waiting& waiting) {
+    const Command& command = waiting.request.command;
+    const auto method = JobMethodOf(command.type);
+    if (!method || (id != 0 && command.job != id)) return false;
+    JobRecord job;
+    job.id = command.job;
+    job.method = *method;
+    job.state = JobState::kCancelled;
+    job.end_tick = session_->tick();
+    std::snprintf(job.error, sizeof job.error, "%s", why);
+    EmitJob(job);
+    return true;
+  });
+}
+
 /// Ends the jobs of a run that another one takes the place of.
 void ControlLoop::CancelEverything(const char* why) {
   const std::int64_t tick = session_->tick();
-  for (const Waiting& waiting : commands_) {
-    if (const auto method = JobMethodOf(waiting.request.command.type)) {
-      JobRecord job;
-      job.id = waiting.request.command.job;
-      job.method = *method;
-      job.state = JobState::kCancelled;
-      job.end_tick = tick;
-      std::snprintf(job.error, sizeof job.error, "%s", why);
-      EmitJob(job);
-    }
-  }
+  CancelWaiting(0, why);
   commands_.clear();
   if (steps_left_ > 0) FinishStep(JobState::kCancelled, why);
   CollectOutput();
@@ -159,8 +165,7 @@ void ControlLoop::Adopt(std::unique_ptr<Session> session) {
   event.kind = EventKind::kReset;
   event.tick = session_->tick();
   event.value = static_cast<double>(session_->seed());
-  std::snprintf(event.text, sizeof event.text, "checkpoint %.60s restored",
-                checkpoint.name.c_str());
+  std::snprintf(event.text, sizeof event.text, "checkpoint %s restored", checkpoint.name.c_str());
   Publish();
   EmitEvent(event);
   restoring_ = {};

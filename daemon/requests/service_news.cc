@@ -141,7 +141,8 @@ void Service::TakeInNews() {
 
 void Service::TakeIn(const JournalNews& news) {
   switch (news.kind) {
-    case JournalNews::Kind::kBegin:
+    case JournalNews::Kind::kBegin: {
+      const Stepper before = config_.control.session.world.stepper;
       journal_ = news.start->journal;
       run_ = news.run;
       if (recorder_) recorder_->Begin(journal_, run_);
@@ -149,12 +150,14 @@ void Service::TakeIn(const JournalNews& news) {
       config_.control.session.model.scenario = journal_.config.model.scenario;
       SetDefaults();
       if (!news.start->restored) break;
-      config_.stepper_reason = "that of the checkpoint's run";
+      if (journal_.config.world.stepper != before)
+        config_.stepper_reason = "that of the checkpoint's run";
       Accept().parameters = news.start->parameters;
       Accept().noise = news.start->noise;
       Accept().seed = news.start->seed;
       AcceptObject(std::make_shared<const ObjectModel>(journal_.config.model.object));
       break;
+    }
     case JournalNews::Kind::kCommand:
       journal_.entries.push_back(news.entry);
       if (recorder_) recorder_->Add(news.entry, news.run);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/sensing/noise.h"
+#include "core/sensing/sensors.h"
 #include "daemon/requests/handlers.h"
 #include "daemon/wire/frame_json.h"
 
@@ -19,7 +22,9 @@ Command Of(CommandType type) {
 
 Outcome ClockAnswer(Service& service, std::uint64_t barrier) {
   return {.barrier = barrier, .later = [&service] {
-            return Json{{"paused", service.newest().paused}, {"tick", service.newest().frame.tick}};
+            return Json{{"paused", service.newest().paused},
+                        {"tick", service.newest().frame.tick},
+                        {"clock", ClockName(service.clock())}};
           }};
 }
 
@@ -29,11 +34,16 @@ Outcome Stop(Service& service, const Params&, Client&) {
   service.CheckAllowed(CommandType::kStop);
   const JobRecord* job = service.jobs().Unfinished();
   const JobRecord* step = service.jobs().UnfinishedStep();
-  Json result = {{"job", job ? Json(job->id) : Json()}, {"step", step ? Json(step->id) : Json()}};
+  const std::int64_t id = job ? job->id : 0;
+  Json result = {{"job", job ? Json(id) : Json()}, {"step", step ? Json(step->id) : Json()}};
   std::uint64_t barrier = 0;
   if (job || !step) barrier = service.PostCommand(Of(CommandType::kStop));
   if (step) barrier = service.Post({.kind = ControlRequest::Kind::kCancelStep, .job = step->id});
-  return {.result = std::move(result), .barrier = barrier};
+  return {.barrier = barrier, .later = [&service, id, result = std::move(result)]() mutable {
+            const JobRecord* now = service.jobs().Find(id);
+            result["begun"] = now ? Json(now->start_tick >= 0 || !Ended(now->state)) : Json();
+            return result;
+          }};
 }
 
 Outcome Pause(Service& service, const Params&, Client&) {
@@ -195,6 +205,14 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
       {"dropout_gap_s", &NoiseLevels::dropout_gap_s},
       {"latency_s", &NoiseLevels::latency_s}};
   for (const auto& [name, level] : kLevels) levels.*level = params.Number(name, levels.*level);
+  const double sample_s = std::max(service.dt(), 1 / kSensorRateHz);
+  if (const double gap = levels.dropout_gap_s; gap > 0 && gap < sample_s)
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams,
+                 fmt::format("dropout_gap_s = {:g} is shorter than a sample", gap),
+                 fmt::format("allowed are {:g} s to 1 s, and 0, which is a sample", sample_s),
+                 "dropout_gap_s",
+                 {}});
   Command command = Of(CommandType::kNoise);
   command.noise = levels;
   const std::uint64_t barrier = service.PostCommand(std::move(command));

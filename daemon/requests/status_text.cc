@@ -27,7 +27,7 @@ Json UntilTimes(const Service& service) {
           {"protocol", kWireVersion},
           {"state", Name(frame.state)},
           {"paused", newest.paused},
-          {"clock", service.clock() == ClockMode::kLockstep ? "lockstep" : "continuous"},
+          {"clock", ClockName(service.clock())},
           {"advancing", newest.advancing},
           {"tick", frame.tick},
           {"time_s", frame.time_s},

@@ -161,6 +161,17 @@ class Paused(DaemonCase):
         self.expect(0, "step", "--until-job-ends", "--wait")
         self.assertEqual(self.json("job", "show", "1")["state"], "done")
 
+    def test_what_has_not_begun_never_begins(self):
+        job = self.json("grasp")["job"]
+        self.assertEqual(self.expect(0, "stop").stdout, f"job {job} cancelled before it began\n")
+        self.expect(0, "step", "3", "--wait")
+        record = self.json("job", "show", job)
+        self.assertEqual((record["state"], record["start_tick"]), ("cancelled", None))
+        self.assertEqual(self.json("status")["state"], "idle")
+
+    def test_resuming_does_not_claim_that_time_runs(self):
+        self.assertEqual(self.expect(0, "resume").stdout, "no longer paused at tick 0; in lockstep time goes on while a job runs\n")
+
     def test_step_until_the_job_ends(self):
         job = self.json("grasp")["job"]
         step = self.json("step", "--until-job-ends", "--wait")

@@ -30,6 +30,27 @@ TEST_F(Jobs, ASecondOneIsBusyEvenBeforeTheFirstHasBegun) {
   EXPECT_EQ(client->Result("job.list")["jobs"].size(), 1u);  // refused ones leave no record
 }
 
+// Paused, a command waits for the next tick: what ends a job before that keeps it from beginning.
+TEST_F(Jobs, OneThatHasNotBegunEndsWithoutBeginning) {
+  for (const char* method : {"stop", "job.cancel"}) {
+    SCOPED_TRACE(method);
+    const Json id = client->Result("grasp")["job"];
+    const bool stop = std::string_view(method) == "stop";
+    const Json answer = client->Result(method, stop ? Json::object() : Json{{"id", id}});
+    if (stop) EXPECT_EQ(answer["job"], id);
+    if (stop) EXPECT_EQ(answer["begun"], false);
+    const Json record = client->Result("job.get", {{"id", id}});
+    EXPECT_EQ(record["state"], "cancelled");
+    EXPECT_EQ(record["start_tick"], Json());
+    Step(5);
+    EXPECT_EQ(client->Result("status")["state"], "idle");
+  }
+  const Json next = client->Result("grasp")["job"];  // nothing is in its way
+  Step(5);
+  EXPECT_EQ(client->Result("job.get", {{"id", next}})["state"], "running");
+  EXPECT_EQ(client->Result("stop")["begun"], true);
+}
+
 TEST_F(Jobs, StepsAreExact) {
   Step(7);
   EXPECT_EQ(client->Result("status")["tick"], 7);

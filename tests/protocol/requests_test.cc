@@ -71,6 +71,7 @@ TEST_F(Requests, AnswerWithTheRightCode) {
       {"step", {{"ticks", "3"}}, -32602},
       {"noise.set", {{"preset", "loud"}}, -32602},
       {"noise.set", {{"position_m", -1}}, -32602},
+      {"noise.set", {{"dropout_gap_s", 0.0001}}, -32602},
       {"noise.set", {{"position_m", nullptr}}, -32602},
       {"param.get", {{"name", "object.friction"}}, 0},
       {"param.get", {{"name", "object.frictoin"}}, -32003},

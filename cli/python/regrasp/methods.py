@@ -153,7 +153,7 @@ class Methods:
         force_drift_n: normal force, random walk, after one second [N]; 0 to 2; left out: unchanged.
         object_drift_m: object position, random walk, after one second [m]; 0 to 0.05; left out: unchanged.
         dropout_fraction: share of the time in which a fingertip feels nothing; 0 to 0.9; left out: unchanged.
-        dropout_gap_s: mean length of such a gap; at least a sample [s]; 0 to 1; left out: unchanged.
+        dropout_gap_s: mean length of such a gap; 0: a sample, which is the least [s]; 0 to 1; left out: unchanged.
         latency_s: age of what a fingertip reports [s]; 0 to 0.02; left out: unchanged.
         Returns preset and every level.
         """
@@ -202,7 +202,7 @@ class Methods:
 
     def pause(self) -> dict:
         """Stop the clock of the simulation; a step that runs ends.
-        Returns paused, tick.
+        Returns paused, tick, clock (continuous, lockstep).
         """
         return self._ask("pause", {})
 
@@ -281,7 +281,7 @@ class Methods:
 
     def resume(self) -> dict:
         """Let the clock of the simulation run again.
-        Returns paused, tick.
+        Returns paused, tick, clock.
         """
         return self._ask("resume", {})
 
@@ -334,7 +334,8 @@ class Methods:
 
     def stop(self) -> dict:
         """End the current job, or step, and keep holding.
-        Returns job (the one that ends), or null; step (the job of the step that ends), or null.
+        Returns job (the one that ends), or null; step (the job of the step that ends), or null; begun (false: the
+            job ended before it began; null without a job).
         """
         return self._ask("stop", {})
 
