@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/files/output_file.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/socket_path.h"
 #include "core/protocol/user_directories.h"
@@ -21,6 +22,10 @@ namespace {
 StepperChoice StepperFor(const std::string& word, const SessionConfig& session) {
   if (const auto stepper = StepperNamed(word)) return {*stepper, "as the configuration says"};
   StepperChoice choice = ChooseStepper(session.model, session.world);
+  if (!choice.works)
+    throw ModelError(
+        fmt::format("{}: {}; regrasp hand check shows masses, inertias and lengths of its links",
+                    session.model.hand.name, choice.reason));
   const bool fast = choice.stepper == Stepper::kFast;
   spdlog::log(fast ? spdlog::level::debug : spdlog::level::warn, "stepper {}: {}",
               Name(choice.stepper), choice.reason);
@@ -81,10 +86,20 @@ ServiceConfig MakeServiceConfig(const DaemonConfig& config) {
   return service;
 }
 
+/// Whoever names a directory wants files there: one that takes none is refused. Where nobody has,
+/// the hand moves all the same, and status warns.
+void TryOutput(const DaemonConfig& config, ServiceConfig* service) {
+  service->output_fault = WhyNoOutput(service->output_dir.string());
+  if (!service->output_fault.empty() && !config.output_dir.empty())
+    throw WriteError(
+        fmt::format("output_dir {}: {}", service->output_dir.string(), service->output_fault));
+}
+
 }  // namespace
 
 Daemon::Daemon(const DaemonConfig& config, const Limits* limits) : config_(config) {
   ServiceConfig service = MakeServiceConfig(config);
+  TryOutput(config, &service);
   for (const ModelWarning& warning : service.control.session.model.report.warnings)
     spdlog::warn("{}", warning.Line());
   if (const int inherited = InheritedSocket(); inherited >= 0)
@@ -145,8 +160,13 @@ SessionConfig MakeSessionConfig(const DaemonConfig& config) {
 }
 
 std::vector<std::string> CheckModels(const DaemonConfig& config) {
-  const Session session(MakeSessionConfig(config));
+  ServiceConfig service = MakeServiceConfig(config);
+  TryOutput(config, &service);
+  const Session session(std::move(service.control.session));
   std::vector<std::string> warnings;
+  if (!service.output_fault.empty())
+    warnings.push_back(
+        fmt::format("output_dir {}: {}", service.output_dir.string(), service.output_fault));
   for (const ModelWarning& warning : session.config().model.report.warnings)
     warnings.push_back(warning.Line());
   const auto overlap = OverlapText(session.world().start_overlap(), session.config().model.hand);

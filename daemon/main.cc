@@ -18,6 +18,7 @@
 #include "core/files/draft.h"
 #include "core/files/json_text.h"
 #include "core/files/names.h"
+#include "core/files/output_file.h"
 #include "core/hand/scenario.h"
 #include "core/protocol/errors.h"
 #include "core/protocol/standard_files.h"
@@ -233,7 +234,10 @@ int Main(int argc, char** argv) {
   } catch (const ConfigError& e) {
     return FailShown(e.what(), "regraspd --print-default-config", ExitCode::kUsage);
   } catch (const ModelError& e) {
-    return FailShown(e.what(), "regraspd --check-config", ExitCode::kNotFound);
+    return FailShown(e.what(), "regraspd --check-config",
+                     e.names_no_model() ? ExitCode::kNotFound : ExitCode::kFailed);
+  } catch (const WriteError& e) {
+    return FailShown(e.what(), "regraspd --output-dir DIR", ExitCode::kIo);
   } catch (const SocketError& e) {
     const bool busy = e.exit_code() == ExitCode::kRefused;
     return Fail(e.what(), busy ? "regrasp status" : "regraspd --socket PATH", e.exit_code());

@@ -1,16 +1,14 @@
 #include "cli/commands/doctor.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "cli/client/daemon_process.h"
 #include "cli/client/private_daemon.h"
 #include "cli/client/program.h"
+#include "core/files/output_file.h"
 #include "core/protocol/user_directories.h"
 
 namespace regrasp::cli {
@@ -81,7 +79,8 @@ Check CheckFont() {
 Check CheckConfiguration(const std::string& daemon) {
   const Finished finished = RunProgram({daemon, "--check-config"});
   if (finished.code == 0) return {"models", "hand, object and configuration load", ""};
-  const bool model = finished.code == static_cast<int>(kNotFound);
+  const bool model =
+      finished.code == static_cast<int>(kNotFound) || finished.code == static_cast<int>(kFailed);
   return {"models", FirstLine(finished),
           model ? "regrasp up --models-dir DIR" : "regrasp config check", false};
 }
@@ -102,11 +101,14 @@ Check CheckStepper(const std::string& daemon) {
     const Finished finished =
         RunProgram({FindHelper("regrasp-hand"), "check", hand.empty() ? "shadow" : hand, "--json"});
     const bool good = finished.code == 0;
-    const Json told = Json::parse(good ? finished.out : finished.err, nullptr, false);
-    if (!good || !told.is_object())
-      return {"stepper",
-              told.is_object() ? Plain(At(At(told, "error"), "message")) : FirstLine(finished),
-              "regrasp hand check " + hand, false};
+    const std::string& answer = finished.out.empty() ? finished.err : finished.out;
+    const Json told = Json::parse(answer, nullptr, false);
+    if (!good || !told.is_object()) {
+      const std::string cause = !told.is_object()        ? FirstLine(finished)
+                                : told.contains("error") ? Plain(At(told["error"], "message"))
+                                                         : Plain(At(told, "stepper_reason"));
+      return {"stepper", cause, "regrasp hand check " + hand, false};
+    }
     const std::string best = Plain(told["stepper"]);
     return {
         "stepper",
@@ -118,20 +120,18 @@ Check CheckStepper(const std::string& daemon) {
   }
 }
 
-Check CheckOutput(const std::string& daemon) {
-  std::string directory = Configured(daemon, "output_dir");
-  if (directory.empty()) directory = DefaultOutputDir();
-  fs::path place = directory;
-  std::error_code ignored;
-  while (!fs::exists(place, ignored) && place.has_relative_path()) place = place.parent_path();
-  std::string cause = "it is no directory";
-  if (fs::is_directory(place, ignored)) {
-    if (::access(place.c_str(), W_OK | X_OK) == 0) return {"output", directory, ""};
-    cause = std::strerror(errno);
+/// Where the daemon that answers writes; where none does, the one that would start.
+Check CheckOutput(Context& context, const std::string& daemon) {
+  std::string directory;
+  try {
+    directory = Plain(At(context.client().Call("status", Json::object()), "output_dir"));
+  } catch (const CliError&) {  // CheckDaemon tells
+    directory = Configured(daemon, "output_dir");
   }
-  const std::string above = place == directory ? "" : "cannot make " + directory + ": ";
-  return {"output", above + "cannot write to " + place.string() + ": " + cause,
-          "regrasp up --output-dir DIR", false};
+  if (directory.empty()) directory = DefaultOutputDir();
+  const std::string cause = WhyNoOutput(directory);
+  if (cause.empty()) return {"output", directory, ""};
+  return {"output", directory + ": " + cause, "regrasp up --output-dir DIR", false};
 }
 
 Check CheckSocket(const std::string& flag) {
@@ -232,8 +232,10 @@ ExitCode Doctor(Context& context, const Invocation&) {
   std::vector<Check> checks;
   try {
     const std::string daemon = FindDaemon();
-    checks = {CheckProgram(daemon), CheckHelpers(),      CheckFont(),   CheckConfiguration(daemon),
-              CheckStepper(daemon), CheckOutput(daemon), CheckPhysics()};
+    checks = {CheckProgram(daemon), CheckHelpers(),
+              CheckFont(),          CheckConfiguration(daemon),
+              CheckStepper(daemon), CheckOutput(context, daemon),
+              CheckPhysics()};
   } catch (const CliError& error) {
     checks = {Fault("program", error, "build it, or install the package")};
   }

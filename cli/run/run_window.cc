@@ -34,7 +34,7 @@ std::unique_ptr<Replay> ReplayFrom(const Journal& journal, const RunSavedState& 
 
 void RefuseBeginning(double from_s, double end_s) {
   throw cli::CliError(
-      ExitCode::kIo,
+      ExitCode::kUsage,
       fmt::format("nothing happens from --from {:g} s on: the run ends at {:g} s", from_s, end_s));
 }
 

@@ -17,7 +17,7 @@ struct Stretch {
   double from_s = 0, to_s = 1e9;
 };
 
-/// Refuses a stretch that begins where the run, which ends at `end_s`, is over: CliError(kIo).
+/// Refuses a stretch that begins where the run, which ends at `end_s`, is over: CliError(kUsage).
 [[noreturn]] void RefuseBeginning(double from_s, double end_s);
 /// The time of the last message [ns]. `chunks`: of the file, none where it has no index.
 std::uint64_t LastTime(const std::string& path, const std::vector<McapChunk>& chunks);
@@ -26,7 +26,7 @@ class RunWindow {
  public:
   /// Reads the journal and begins at the last saved state that is not after `from_s`; at tick 0
   /// where there is none, or none that can be trusted: note() then says why. Throws McapError,
-  /// JournalError, ModelError, CliError(kIo) where the run ends before `from_s`. With `lead_s`
+  /// JournalError, ModelError, CliError(kUsage) where the run ends before `from_s`. With `lead_s`
   /// the window begins so much earlier. `segment`: which one, or kLast.
   static constexpr int kLast = -1;
   RunWindow(const std::string& path, Stretch stretch, double lead_s = 0, int segment = kLast);

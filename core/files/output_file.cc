@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,13 @@ namespace regrasp {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// `path`, or of what is above it the first that is there.
+fs::path ThereOf(fs::path path) {
+  std::error_code error;
+  while (!fs::exists(path, error) && path.has_relative_path()) path = path.parent_path();
+  return path;
+}
 
 /// Runs what may throw a draft's own errors, which name the target.
 template <typename Function>
@@ -36,11 +44,24 @@ void CheckWritable(const std::string& target, Draft::Existing existing) {
   std::error_code error;
   fs::path directory = fs::absolute(target, error).parent_path();
   if (error) fail("the current directory has gone");
-  while (!fs::exists(directory, error) && directory.has_relative_path())
-    directory = directory.parent_path();
+  directory = ThereOf(directory);
   if (!fs::is_directory(directory, error)) fail(directory.string() + " is no directory");
   if (::access(directory.c_str(), W_OK | X_OK) != 0)
     fail(directory.string() + ": " + std::strerror(errno));
+}
+
+std::string WhyNoOutput(const std::string& directory) {
+  std::error_code error;
+  const fs::path there = ThereOf(fs::absolute(directory, error));
+  if (error) return "the current directory has gone";
+  if (!fs::is_directory(there, error)) return there.string() + " is no directory";
+  std::string probe = (there / ".regrasp-XXXXXX").string();
+  if (::mkdtemp(probe.data()) != nullptr) {
+    ::rmdir(probe.c_str());
+    return "";
+  }
+  if (errno == ENOSPC || errno == EDQUOT) return "";
+  return "nothing can be made in " + there.string() + ": " + std::strerror(errno);
 }
 
 void WriteOutput(const std::string& target, Draft::Existing existing,

@@ -80,6 +80,7 @@ struct ServiceConfig {
   std::vector<std::filesystem::path> search_path;  ///< for `reset {object}`
   LoadOptions load;                                ///< for `reset {object}`
   std::filesystem::path output_dir;                ///< for pictures
+  std::string output_fault;                        ///< why nothing can be written there, or ""
   /// Where parameters that the configuration sets stand: "FILE:LINE", by name.
   std::map<std::string, std::string> parameter_origins;
 };

@@ -6,7 +6,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import Case, FakeDaemon, HANG_S, REGRASP, environment, wait_until_it_minds
+from harness import SOURCE, Case, FakeDaemon, HANG_S, REGRASP, environment, wait_until_it_minds
 
 
 class Doctor(Case):
@@ -49,6 +49,16 @@ class Doctor(Case):
         self.assertFalse(check["ok"])
         self.assertIn(f"{self.dir}/file/state/regrasp", check["finding"])
         self.assertEqual(check["next"], "regrasp up --output-dir DIR")
+        for directory in ("/proc/xx", self.dir / "file"):
+            cause, _ = self.refused(74, "up", "--output-dir", directory)
+            self.assertIn(f"output_dir {directory}: ", cause)
+        # Where nobody has named one, the hand moves, and status warns.
+        self.addCleanup(self.regrasp, "down")
+        up = self.expect(0, "up", "--speed", "max", "--models-dir", SOURCE / "models", env=environment(XDG_STATE_HOME=f"{self.dir}/file/state"))
+        self.assertIn(f"warning: output_dir {self.dir}/file/state/regrasp: {self.dir}/file is no directory", up.stdout)
+        self.assertEqual(len(self.json("status")["warnings"]), 1)
+        # It is the daemon's directory that counts, whatever this one's would be.
+        self.assertIn(f"{self.dir}/file/state", self.check("output", HOME=str(self.dir))["finding"])
 
 
 if __name__ == "__main__":
