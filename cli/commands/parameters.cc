@@ -14,6 +14,7 @@
 #include "cli/client/context.h"
 #include "cli/grammar/units.h"
 #include "core/files/draft.h"
+#include "core/files/names.h"
 #include "core/files/problem_list.h"
 #include "core/files/toml_text.h"
 
@@ -167,7 +168,12 @@ ExitCode Save(Context& context, const Invocation& invocation) {
 struct ParameterFile {
   Json values = Json::object();
   std::map<std::string, std::uint32_t> lines = {};
+  std::map<std::string, std::uint32_t> outside = {};  ///< of [parameters]
 };
+
+/// The name of no parameter: a file with more than parameters is refused with all that the daemon
+/// finds wrong besides.
+constexpr const char* kOutside = "[outside]";
 
 /// A value as the wire takes it; null for what no parameter can be.
 Json ToWire(const toml::node& node) {
@@ -214,7 +220,12 @@ ParameterFile ReadFile(const std::string& file) {
     if (!table)
       throw CliError(kUsage, fmt::format("{}: no table [parameters]", file),
                      "regrasp param save OTHER_FILE, to see one");
+    ParameterFile all;
+    ReadTable(root, "", &all);
+    for (const auto& [name, line] : all.lines)
+      if (!name.starts_with("parameters.")) read.outside[name] = line;
     ReadTable(*table, "", &read);
+    if (!read.outside.empty()) read.values[kOutside] = nullptr;
   } catch (const toml::parse_error& error) {
     throw CliError(kUsage,
                    fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()),
@@ -234,12 +245,23 @@ CliError Placed(const CliError& error, const std::string& file, const ParameterF
     const int line = line_of(one);  // 0: the daemon does not repeat names of any length
     return fmt::format("{}{}: {}", file, line == 0 ? "" : fmt::format(":{}", line), one.what());
   };
-  if (error.rpc_errors.empty()) return error.With(placed(error), error.hint);
+  if (error.rpc_errors.empty() && error.rpc_param != kOutside)
+    return error.With(placed(error), error.hint);
   ProblemList problems;
+  for (const auto& [name, line] : read.outside)
+    problems.Add(
+        static_cast<int>(line),
+        fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that table "
+                    "is a parameter",
+                    file, line, ShownText(name)));
   for (const CliError& one : error.rpc_errors)
-    problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
+    if (one.rpc_param != kOutside)
+      problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
   problems.AddUnkept(error.rpc_more);
-  return error.With(problems.Text(), "regrasp param list");
+  CliError all = error.With(problems.Text(), "regrasp param list");
+  if (!read.outside.empty()) all.code = kUsage;
+  all.is_list = problems.count() > 1;
+  return all;
 }
 
 ExitCode Load(Context& context, const Invocation& invocation) {

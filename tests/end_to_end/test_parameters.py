@@ -80,7 +80,7 @@ class Parameters(DaemonCase):
             self.assertEqual(self.changed(), {}, text)
         file.write_text("[parameters]\nobject.friction = 7\ngait.mod = 1\ngait.hop = false\ngait.mode = 'walk'\ngait.lead = nan\n")
         errors = self.refused_list(2, "param", "load", file)
-        for error, place in zip(errors, (":2: object.friction = 7 is out of range; allowed: 0.01 ... 1", ":3: no parameter named 'gait.mod'; did you mean 'gait.mode'?",
+        for error, place in zip(errors, (":2: object.friction = 7 is out of range; allowed: 0.001 ... 1", ":3: no parameter named 'gait.mod'; did you mean 'gait.mode'?",
                                          ":5: gait.mode = 'walk': expected exploring or returning", ":6: gait.lead: expected")):
             self.assertTrue(error.startswith(f"{file}{place}"), errors)
         self.assertEqual(self.changed(), {})
@@ -94,6 +94,15 @@ class Parameters(DaemonCase):
         self.assertIn(f"{file}: no parameter named 'aaa", many[-2])
         self.assertEqual(many[-1], "and 20 more")
         self.refused(6, "param", "load", self.dir / "absent.toml")
+        # What stands beside the table is no parameter, however much it looks like one.
+        file.write_text("object.friction = 0.41\n[parameters]\ngait.hop = false\n")
+        cause, _ = self.refused(2, "param", "load", file)
+        self.assertEqual(cause, f"regrasp: {file}:1: object.friction: is outside of [parameters]; only what stands in that table is a parameter")
+        file.write_text('seed = "x"\n[parameters]\ngait.mod = 1\n[object]\nmas_kg = 1\n')
+        errors = self.refused_list(2, "param", "load", file)
+        for error, place in zip(errors, (":1: seed: is outside", ":3: no parameter named 'gait.mod'", ":5: object.mas_kg: is outside"), strict=True):
+            self.assertTrue(error.startswith(f"{file}{place}"), errors)
+        self.assertEqual(self.changed(), {})
         self.refused(74, "param", "save", self.dir / "absent" / "x.toml")
         self.assertEqual([path.name for path in self.dir.iterdir() if path.name.endswith(".part") or path.name.startswith(".")], [])
 
