@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/files/shell_word.h"
+
 namespace regrasp::cli {
 
 std::size_t Plan::num_units() const {
@@ -42,13 +44,15 @@ std::string Plan::Command(const Unit& unit, const std::string& estimator) const 
                         criterion, estimator, rays);
   }
   text += fmt::format(" --noise {} --seed {} -n 1", unit.noise, unit.seed);
-  for (const auto& [flag, value] : {std::pair{"hand", hand}, std::pair{"object", common.object}})
-    if (!value.empty()) text += fmt::format(" --{} {}", flag, value);
+  for (const auto& [flag, value] : {std::pair{"hand", hand}, std::pair{"object", common.object},
+                                    std::pair{"models-dir", models_dir}})
+    if (!value.empty()) text += fmt::format(" --{} {}", flag, ShellWord(value));
   if (common.tilt_deg) text += fmt::format(" --tilt {}", *common.tilt_deg);
   if (common.push_n > 0) text += fmt::format(" --push {}", *common.push_n);
-  for (const auto& [name, value] : common.set) text += fmt::format(" --set {}={}", name, value);
+  for (const auto& [name, value] : common.set)
+    text += " --set " + ShellWord(fmt::format("{}={}", name, value));
   if (stepper != "fast") text += " --stepper " + stepper;
-  if (!cases.empty()) text += fmt::format(" --case '{}'", Text(cases.at(unit.which)));
+  if (!cases.empty()) text += " --case " + ShellWord(Text(cases.at(unit.which)));
   return text + " -o trial";
 }
 

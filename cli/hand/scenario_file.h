@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "core/files/shell_word.h"
+
 namespace regrasp::hand {
 
 /// A file that is not there yet.
@@ -36,8 +38,5 @@ class ScenarioFile {
 
   std::filesystem::path path_;
 };
-
-/// A word as a shell takes it.
-std::string ShellWord(const std::string& word);
 
 }  // namespace regrasp::hand

@@ -81,7 +81,7 @@ class Independence(ExperimentCase):
         words = shlex.split(row["command"])
         self.assertEqual(words[0], "regrasp")
         words[words.index("-o") + 1] = self.dir / "single"
-        self.expect_quiet(*words[1:], "--models-dir", SOURCE / "models")
+        self.expect_quiet(*words[1:])
         self.assertEqual(self.rows("single"), [row])
 
         # Seeds matter, and noise-free truth is told.

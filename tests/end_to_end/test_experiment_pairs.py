@@ -59,7 +59,7 @@ class Pairs(ExperimentCase):
         self.assertEqual(plan["parameters"]["object.friction=0.7"]["object.friction"], 0.7)
         words = shlex.split(self.rows("sweep")[0]["command"])
         words[words.index("-o") + 1] = self.dir / "single"
-        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.run_experiment(*words[2:])
         self.assertEqual(self.rows("single"), self.rows("sweep")[:1])
         self.refused_experiment(2, *self.ONE, "--set", "object.friction=0.7,0.7", "-o", self.dir / "none")
 
@@ -97,7 +97,7 @@ class Pairs(ExperimentCase):
         # What the run gave does not depend on being looked at.
         words = shlex.split(self.rows("foretold")[0]["command"])
         words[words.index("-o") + 1] = self.dir / "single"
-        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.run_experiment(*words[2:])
         for column in ("outcome", "end_tick", "angle_rad", "max_tilt_rad", "slips"):
             self.assertEqual(self.rows("single")[0][column], self.rows("foretold")[0][column])
 
@@ -121,7 +121,7 @@ class Cases(ExperimentCase):
             self.assertEqual(alone["state_hash"], row["state_hash"])
         words = shlex.split(rows[1]["command"])
         words[words.index("-o") + 1] = self.dir / "single"
-        self.run_experiment(*words[2:], "--models-dir", SOURCE / "models")
+        self.run_experiment(*words[2:])
         self.assertEqual(self.rows("single"), [rows[1]])
 
     def test_what_a_case_gives_takes_the_place_of_what_holds_for_all(self):
