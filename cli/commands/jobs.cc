@@ -8,6 +8,7 @@
 
 #include "cli/help/wrap.h"
 #include "cli/print/progress_line.h"
+#include "core/common/count_text.h"
 
 namespace regrasp::cli {
 namespace {
@@ -52,8 +53,8 @@ void PrintExplore(Output& out, const Json& r) {
                        Change(out, At(r, "phi_initial"), At(r, "phi_final"))));
   out.Line(fmt::format("  noise-free {}",
                        Change(out, At(r, "phi_true_initial"), At(r, "phi_true_final"))));
-  out.Line(fmt::format("  path       {} mm in {} cycles", Fixed(At(r, "path_length_m"), 1, 1e3),
-                       Plain(At(r, "cycles"))));
+  out.Line(fmt::format("  path       {} mm in {}", Fixed(At(r, "path_length_m"), 1, 1e3),
+                       CountText(Plain(At(r, "cycles")), "cycle")));
   out.Line(fmt::format("  seed       {}", Plain(At(r, "seed"))));
 }
 
@@ -61,8 +62,8 @@ void PrintRotate(Output& out, const Json& r) {
   out.Line(fmt::format("  angle      {}{} ({} turns) in {} s",
                        Fixed(At(r, "angle_rad"), 1, kDegrees), out.Degree(),
                        Fixed(At(r, "turns"), 2), Fixed(At(r, "sim_time_s"), 1)));
-  out.Line(fmt::format("  gait       {} cycles, {} regrasps", Plain(At(r, "gait_cycles")),
-                       Plain(At(r, "regrasps"))));
+  out.Line(fmt::format("  gait       {}, {}", CountText(Plain(At(r, "gait_cycles")), "cycle"),
+                       CountText(Plain(At(r, "regrasps")), "regrasp")));
   out.Line(fmt::format("  error      at most {} mm, tilt {}{}",
                        Fixed(At(r, "max_position_error_m"), 1, 1e3),
                        Fixed(At(r, "max_tilt_rad"), 1, kDegrees), out.Degree()));

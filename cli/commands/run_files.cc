@@ -10,6 +10,7 @@
 #include "cli/client/context.h"
 #include "cli/client/program.h"
 #include "cli/grammar/units.h"
+#include "core/common/count_text.h"
 #include "core/files/lower_suffix.h"
 #include "core/mcap/without_end.h"
 
@@ -32,12 +33,12 @@ ExitCode RecordStart(Context& context, const Invocation& invocation) {
 ExitCode RecordStop(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    context.out().Line(
-        fmt::format("{}: {} messages, {} MB{}", Plain(At(answer, "path")),
-                    Plain(At(answer, "messages")), Fixed(At(answer, "bytes"), 1, 1e-6),
-                    At(answer, "dropped") == 0
-                        ? ""
-                        : fmt::format(", {} samples lost", Plain(At(answer, "dropped")))));
+    context.out().Line(fmt::format(
+        "{}: {}, {} MB{}", Plain(At(answer, "path")),
+        CountText(Plain(At(answer, "messages")), "message"), Fixed(At(answer, "bytes"), 1, 1e-6),
+        At(answer, "dropped") == 0
+            ? ""
+            : fmt::format(", {} lost", CountText(Plain(At(answer, "dropped")), "sample"))));
   });
   return kOk;
 }

@@ -188,7 +188,7 @@ std::string Plain(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_null()) return "-";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>() + 0.0);  // no -0
   if (value.is_array() && !value.empty() && value[0].is_number()) {
     std::string text;
     for (const auto& item : value) text += (text.empty() ? "" : ", ") + Plain(item);

@@ -13,6 +13,7 @@
 #include "cli/run/plot_run.h"
 #include "cli/run/program.h"
 #include "cli/run/video.h"
+#include "core/common/count_text.h"
 #include "core/files/output_file.h"
 
 namespace regrasp::run {
@@ -77,8 +78,8 @@ ExitCode VideoCommand(const Command& command) {
          {"codec", result.codec},
          {"differences", differences},
          {"lost", LossesJson(window.file().lost)}},
-        fmt::format("{}: {} frames, {:.1f} s, {}, made in {:.1f} s ({:.2g} times real time)", out,
-                    result.frames, result.duration_s, result.codec, made_in_s,
+        fmt::format("{}: {}, {:.1f} s, {}, made in {:.1f} s ({:.2g} times real time)", out,
+                    CountText(result.frames, "frame"), result.duration_s, result.codec, made_in_s,
                     result.duration_s / made_in_s) +
             LossesText(window.file().lost));
   return window.file().lost.empty() ? ExitCode::kOk : ExitCode::kFailed;

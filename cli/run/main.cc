@@ -8,6 +8,7 @@
 #include "cli/run/export_run.h"
 #include "cli/run/program.h"
 #include "cli/run/replay_run.h"
+#include "core/common/count_text.h"
 #include "core/mcap/without_end.h"
 
 namespace regrasp::run {
@@ -64,8 +65,9 @@ ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayRe
                                 {"recorded", HashText(d->recorded)},
                                 {"found", HashText(d->found)}};
   std::string text =
-      fmt::format("{}: {}\n  {} commands, {:.3f} s ({} ticks), {} states compared{}", command.file,
-                  verdict, result.commands, seconds, result.ticks, result.compared, note);
+      fmt::format("{}: {}\n  {}, {:.3f} s ({}), {} compared{}", command.file, verdict,
+                  CountText(result.commands, "command"), seconds, CountText(result.ticks, "tick"),
+                  CountText(result.compared, "state"), note);
   text += EndText(file.complete) + LossesText(file.lost);
   if (!same_build)
     text += fmt::format("\n  recorded by {}\n  replayed by {}", segment.build, BuildIdentity());

@@ -61,7 +61,9 @@ ReloadPlan PlanReload(const DaemonConfig& running, const DaemonConfig& wanted) {
     preset_changes = preset_changes || (changes && IsPreset(InfoOf(name)));
   }
   for (const auto& [name, value] : running.parameters)
-    if (!Find(wanted, name)) plan.restart.push_back(fmt::format("{}: no longer set", name));
+    if (!Find(wanted, name))
+      plan.restart.push_back(
+          fmt::format("{} is no longer set and keeps its value; its default", name));
   return plan;
 }
 

@@ -28,7 +28,7 @@ std::string CheckedFileName(const std::string& name, std::string_view param,
                                 {suffixes.begin(), suffixes.end()}});
   };
   if (const std::string fault = FileNameFault(name); !fault.empty())
-    refuse(fmt::format("{} is not a plain file name: it {}", param, fault));
+    refuse(fmt::format("{} '{}' is not a plain file name: it {}", param, Shown(name), fault));
   const std::string suffix = std::filesystem::path(name).extension().string();
   if (suffixes.size() > 0 && std::ranges::find(suffixes, suffix) == suffixes.end())
     refuse(fmt::format("{} '{}' does not end in {}", param, name, fmt::join(suffixes, ", ")));

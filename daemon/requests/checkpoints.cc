@@ -28,7 +28,7 @@ fs::path PathOf(Service& service, const Params& params) {
       name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
   if (name.size() > kMaxName || !plain || !FileNameFault(name).empty())
     throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                "not a name for a checkpoint",
+                                fmt::format("'{}' is not a name for a checkpoint", Shown(name)),
                                 "use 1 to 64 letters, digits, - _ . with no dot and no - first",
                                 "name",
                                 {}});

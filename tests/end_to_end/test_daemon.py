@@ -124,9 +124,11 @@ class Session(DaemonCase):
         self.refused(2, "param", "set", "object.friction", "7")
         self.refused(6, "param", "get", "object.frictoin")
         self.refused(8, "call", "nonsense")
+        self.assertIn("'../x' is not a name for a checkpoint", self.refused(2, "checkpoint", "save", "../x")[0])
+        self.assertIn("file 'a/b.mcap' is not a plain file name: it holds a '/'", self.refused(2, "record", "start", "a/b.mcap")[0])
         self.refused(2, "call", "status", '{"x": 1}')
         # What to try is a command; what the daemon hints at is part of the cause.
-        for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.01 ... 1", "regrasp param list"),
+        for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.001 ... 1", "regrasp param list"),
                                           (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
                                           (["reset", "--object", "eg"], "did you mean 'egg'?", "regrasp help reset"),
                                           (["job", "show", "99"], "no job 99", "regrasp job list"),

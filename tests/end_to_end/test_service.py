@@ -98,7 +98,7 @@ class Config(Case):
     def test_errors_name_file_line_and_nearest_name(self):
         for text, parts in [("seed = 1\nspede = 2\n", [":2:", "'speed'"]), ("noise = \"papr\"\n", [":1:", "'paper'"]), ("seed = \n", [":1:"]),
                             ("max_clients = 5000\n", ["1 ... 1000"]), ("seed = 'one'\n", [":1:", "seed = 'one': expected an integer"]),
-                            ("[parameters]\nobject.friction = 99\n", [":2:", "object.friction = 99 is out of range; allowed: 0.01 ... 1"]),
+                            ("[parameters]\nobject.friction = 99\n", [":2:", "object.friction = 99 is out of range; allowed: 0.001 ... 1"]),
                             ("[parameters]\ngravity = [0, 0]\n", [":2:", "gravity is 3 numbers, not [0, 0]; allowed: 3 numbers, each -50 ... 50 m/s2"])]:
             file = self.write(text)
             cause, hint = self.refused(2, "config", "check", file)
@@ -215,6 +215,10 @@ class Notify(ServiceCase):
         self.assertIn("noise = coarse", log)
         self.assertIn("max_clients = 3", log)
         self.assertRegex(log, r"seed = 2 \(.*c\.toml:2\) needs a restart")
+        file.write_text('noise = "coarse"\nseed = 2\n')
+        self.process.send_signal(signal.SIGHUP)
+        self.manager.until(lambda message: message.get("READY") == "1")
+        self.assertIn("object.friction is no longer set and keeps its value; its default needs a restart", self.log_text())
         # An error changes nothing.
         file.write_text('noise = "off"\nsede = 2\n')
         self.process.send_signal(signal.SIGHUP)
