@@ -37,8 +37,10 @@ TEST_F(Jobs, OneThatHasNotBegunEndsWithoutBeginning) {
     const Json id = client->Result("grasp")["job"];
     const bool stop = std::string_view(method) == "stop";
     const Json answer = client->Result(method, stop ? Json::object() : Json{{"id", id}});
-    if (stop) EXPECT_EQ(answer["job"], id);
-    if (stop) EXPECT_EQ(answer["begun"], false);
+    if (stop) {
+      EXPECT_EQ(answer["job"], id);
+      EXPECT_EQ(answer["begun"], false);
+    }
     const Json record = client->Result("job.get", {{"id", id}});
     EXPECT_EQ(record["state"], "cancelled");
     EXPECT_EQ(record["start_tick"], Json());
