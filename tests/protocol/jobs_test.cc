@@ -87,6 +87,7 @@ TEST_F(Jobs, WaitIsOvertakenByWhatComesAfterIt) {
           .dump() +
       "\n");
   EXPECT_TRUE(client->Ask("version").contains("result"));  // the wait blocks nothing
+  Step(1);                                                 // it runs, so that its end takes a tick
   client->Result("job.cancel", {{"id", job}});
   client->Send(R"({"jsonrpc":"2.0","id":"step","method":"step","params":{"ticks":3}})"
                "\n");
