@@ -84,7 +84,8 @@ ExitCode PlotRuns(Context& context, const Invocation& invocation) {
   if (context.out().format() == Format::kJson) words.push_back("--json");
   if (context.options().quiet) words.push_back("--quiet");
   const ExitCode code = RunHelper(words, out);
-  if (code == kOk && invocation.Has("show")) context.out().Add(DrawPicture(context, out));
+  // Of a damaged file the picture is there, too.
+  if ((code == kOk || code == kFailed) && invocation.Has("show")) context.out().Add(DrawPicture(context, out));
   return code;
 }
 

@@ -15,6 +15,7 @@
 #include "core/hand/model_error.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
+#include "core/mcap/without_end.h"
 
 namespace regrasp::run {
 namespace {
@@ -93,6 +94,10 @@ Json LossesJson(const std::vector<McapLoss>& lost) {
          {"end_s", loss.end != 0 ? Json(static_cast<double>(loss.end) * 1e-9) : Json()},
          {"cause", loss.cause}});
   return list;
+}
+
+std::string EndText(bool complete) {
+  return complete ? "" : fmt::format("\n  the file has no end: {}", kWhyWithoutEnd);
 }
 
 std::string LossesText(const std::vector<McapLoss>& lost) {
