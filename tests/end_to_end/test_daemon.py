@@ -200,6 +200,14 @@ class Session(DaemonCase):
         self.assertEqual((record["state"], record["reached"]), ("done", False))
         self.assertEqual(self.json("status")["state"], "holding")
 
+    def test_who_waits_for_a_job_that_dropped_the_object_is_told_why(self):
+        self.expect(0, "param", "set", "object.friction", "0.05")
+        for _ in range(50):  # the answer came before the record at times
+            self.expect(0, "reset", "--seed", "1")
+            record = self.json("grasp", "--wait", code=1)
+            self.assertIsNotNone(record["incident"])
+            self.assertEqual(record, self.json("job", "show", record["id"]))
+
     def test_a_lost_object_is_a_failure(self):
         self.expect(0, "grasp", "--wait")
         self.expect(0, "param", "set", "object.friction", "0.05")
