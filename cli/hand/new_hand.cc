@@ -249,6 +249,7 @@ class Maker {
     sheet.report = report_;
     sheet.best = best_;
     sheet.ball = object_.empty();
+    sheet.ball_mm = size_mm_;
     if (!ball_.urdf.empty()) sheet.ball_file = ball_.name;
     sheet.ways = ways_;
     return sheet;
