@@ -61,7 +61,7 @@ bool ControlLoop::Put(Queue* ring, const T& value) {
 }
 
 void ControlLoop::EmitEvent(const Event& event) {
-  if (Put(&events_, PublishedEvent{event, run_}))
+  if (Put(&events_, PublishedEvent{event, run_, frames_published_ + 1}))
     output_.Notify();
   else
     dropped_.fetch_add(1, std::memory_order_relaxed);
@@ -93,6 +93,7 @@ void ControlLoop::Publish() {
   scratch_.step = step_;
   scratch_.run = run_;
   scratch_.commands = applied_;
+  scratch_.number = ++frames_published_;
   publish_due_ = !Put(&frames_, scratch_);
   if (publish_due_) dropped_.fetch_add(1, std::memory_order_relaxed);
   output_.Notify();

@@ -43,9 +43,8 @@ std::vector<Sample> Service::Drain() {
     ++frame_number_;
   }
   // Those whose frame is not here yet wait for it.
-  const auto waiting = std::ranges::find_if(untold_events_, [this](const PublishedEvent& told) {
-    return std::pair(told.run, told.event.tick) > std::pair(newest_.run, newest_.frame.tick);
-  });
+  const auto waiting = std::ranges::find_if(
+      untold_events_, [this](const PublishedEvent& told) { return told.frame > newest_.number; });
   const std::vector<PublishedEvent> later(waiting, untold_events_.end());
   untold_events_.erase(waiting, untold_events_.end());
   for (const PublishedEvent& published : std::exchange(untold_events_, later)) {
