@@ -42,7 +42,7 @@ void ScenarioFile::Check() const {
   const fs::path directory = path_.parent_path().empty() ? "." : path_.parent_path();
   if (!fs::is_directory(directory, ignored))
     throw Failure(ExitCode::kIo, fmt::format("{}: no such directory", directory.string()),
-                  "mkdir -p " + directory.string());
+                  "mkdir -p " + ShellWord(directory.string()));
   try {
     CheckWritable(path_.string(), Draft::Existing::kKeep);
   } catch (const WriteError& error) {
@@ -94,17 +94,6 @@ void ScenarioFile::Write(const std::string& text, const std::string& ball) const
   } catch (const std::runtime_error& error) {
     throw Failure(ExitCode::kIo, error.what(), "another place for -o");
   }
-}
-
-std::string ShellWord(const std::string& word) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) || c >= 0x80 ||
-           std::string_view("._/-+:@,%").find(static_cast<char>(c)) != std::string_view::npos;
-  };
-  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 }  // namespace regrasp::hand

@@ -37,7 +37,4 @@ class ScenarioFile {
   std::filesystem::path path_;
 };
 
-/// A word as a shell takes it.
-std::string ShellWord(const std::string& word);
-
 }  // namespace regrasp::hand

@@ -9,6 +9,7 @@
 
 #include "cli/client/errors.h"
 #include "cli/run/run_window.h"
+#include "core/files/names.h"
 #include "core/files/output_file.h"
 #include "core/journal/provenance.h"
 #include "core/mcap/without_end.h"
@@ -31,7 +32,7 @@ using cli::CliError;
 std::string Name(const std::string& path) { return fs::path(path).filename().string(); }
 
 std::string PlotCommand(std::string_view plot, const std::string& path) {
-  return fmt::format("regrasp plot {} {}", plot, path);
+  return fmt::format("regrasp plot {} {}", plot, ShellWord(path));
 }
 
 /// Of what has been asked for, not of the picture's file.

@@ -47,7 +47,8 @@ std::string WithOtherFile(const Command& command) {
     const auto found = command.options.find(name);
     return found == command.options.end() ? "" : found->second + " ";
   };
-  std::string words = "regrasp " + command.verb + " " + option("--name") + command.file + " ";
+  std::string words =
+      "regrasp " + command.verb + " " + option("--name") + ShellWord(command.file) + " ";
   if (command.Has("--format")) words += "--format " + option("--format");
   return words + "-o OTHER_FILE";
 }
