@@ -118,7 +118,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
                     threshold = LineEntry("threshold", {kGrey, 2, {12, 7}});
   std::vector<LegendGroup> legends = {{"criterion, noise-free φ", legend},
                                       {"", {sensed}},
-                                      {"φ of the grasp, before → after", gains},
+                                      {"φ held, start → end", gains},
                                       {"stability, as sensed", legend}};
   legends.back().entries.push_back(threshold);
   if (canvas.narrow()) {  // the same pens above and below: once is enough
