@@ -57,7 +57,12 @@ def find_socket():
 
 
 def main():
-    hand = Regrasp(find_socket())
+    path = find_socket()
+    try:
+        hand = Regrasp(path)
+    except OSError as error:
+        print(f"no daemon: {path}: {error.strerror}; try: regrasp up --speed max", file=sys.stderr)
+        sys.exit(3)
     if hand.call("status")["state"] == "idle":
         hand.finish("grasp")
     for finger in hand.call("quality")["fingers"]:

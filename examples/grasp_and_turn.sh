@@ -30,6 +30,10 @@ wait_for() {
   esac
 }
 
+if [ ! -S "$socket" ] || ! ask status >/dev/null 2>&1; then
+  echo "no daemon: nobody answers on $socket; try: regrasp up --speed max" >&2
+  exit 3
+fi
 wait_for "$(ask grasp)"
 wait_for "$(ask rotate '{"angle_rad":1.5708}')"
 ask truth

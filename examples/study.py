@@ -18,7 +18,10 @@ def gain(hand, seed, estimator):
     return 100 * (job["phi_true_final"] / job["phi_true_initial"] - 1)
 
 
-seeds = range(1, 1 + int(sys.argv[1] if len(sys.argv) > 1 else 5))
+count = sys.argv[1] if len(sys.argv) > 1 else "5"
+if not count.isdigit() or int(count) == 0:
+    sys.exit(f"study.py: SEEDS is {count!r}; allowed are 1, 2, ...")
+seeds = range(1, 1 + int(count))
 with regrasp.start() as hand:
     pairs = [(gain(hand, s, "least_squares"), gain(hand, s, "secant")) for s in seeds]
 for seed, (ours, printed) in zip(seeds, pairs):

@@ -58,7 +58,7 @@ std::string FindSocket() {
     const std::string path = folder + "/regrasp.sock";
     if (::access(path.c_str(), F_OK) == 0) return path;
   }
-  return "/run/regrasp/regrasp.sock";
+  return std::string(runtime ? runtime : "/run") + "/regrasp/regrasp.sock";
 }
 
 /// The number after the first `key` from `at` on; `at` moves behind it. A real program would use a

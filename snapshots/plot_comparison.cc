@@ -114,11 +114,11 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     if (canvas.narrow()) gain.text = runs[i].label + " " + gain.text;
     gains.push_back(std::move(gain));
   }
-  const LegendEntry sensed = LineEntry("as sensed", {Tint(kInk, 0.68), 1.5}),
+  const LegendEntry sensed = LineEntry("as sensed: paler", {Tint(kInk, 0.68), 1.5}),
                     threshold = LineEntry("threshold", {kGrey, 2, {12, 7}});
   std::vector<LegendGroup> legends = {{"criterion, noise-free φ", legend},
                                       {"", {sensed}},
-                                      {"φ, start → end", gains},
+                                      {"φ held, start → end", gains},
                                       {"stability, as sensed", legend}};
   legends.back().entries.push_back(threshold);
   if (canvas.narrow()) {  // the same pens above and below: once is enough

@@ -61,6 +61,8 @@ std::span<const Frame> Newest(std::span<const Frame> history, double last_s,
   std::size_t start = history.size() - 1;
   while (start > 0 && history[start - 1].time_s <= history[start].time_s) --start;
   history = history.subspan(start);
+  if (history.size() < 2 && history.front().tick == 0)
+    throw PictureRefused(path, "nothing to draw: no time has passed since the run began");
   if (last_s <= 0) return history;
   const double from = history.back().time_s - last_s;
   const auto first = std::find_if(history.begin(), history.end(), [from](const Frame& frame) {

@@ -14,10 +14,11 @@ constexpr const char* kGroup = "Results";
 ExitCode Save(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   context.Print(answer, [&] {
-    context.out().Line(fmt::format("checkpoint {}: {} at {} s (tick {}), state hash {}",
-                                   Plain(At(answer, "name")), Plain(At(answer, "state")),
-                                   Fixed(At(answer, "time_s"), 3), Plain(At(answer, "tick")),
-                                   Plain(At(answer, "state_hash"))));
+    context.out().Line(fmt::format(
+        "checkpoint {}: {} at {} s (tick {}), state hash {}{}", Plain(At(answer, "name")),
+        Plain(At(answer, "state")), Fixed(At(answer, "time_s"), 3), Plain(At(answer, "tick")),
+        Plain(At(answer, "state_hash")),
+        At(answer, "replaced") == true ? "; replaces the one before" : ""));
   });
   return kOk;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "cli/client/context.h"
@@ -30,11 +31,26 @@ ExitCode Rotate(Context& context, const Invocation& invocation) {
   return StartJob(context, invocation);
 }
 
+constexpr double kMostShift_mm = 50;  // of the wire's `move`
+
 ExitCode Move(Context& context, const Invocation& invocation) {
   if (invocation.params.empty()) {
     throw CliError(kUsage, "move takes --by (mm), --turn (degrees) or both, not none",
                    "regrasp move --by 0,0,5 --wait");
   }
+  const auto check = [&](const char* key, const char* flag, double scale, double most,
+                         const char* unit) {
+    if (!invocation.params.contains(key)) return;
+    double squares = 0;
+    for (const Json& part : invocation.params[key])
+      squares += part.get<double>() * part.get<double>();
+    const double length = scale * std::sqrt(squares);
+    if (length > most * (1 + 1e-9))
+      throw CliError(kUsage, fmt::format("{} is {:.4g} {} long; allowed are at most {:g}", flag,
+                                         length, unit, most));
+  };
+  check("offset_m", "--by", 1e3, kMostShift_mm, "mm");
+  check("rotation_rad", "--turn", kDegrees, 180, "degrees");
   return StartJob(context, invocation);
 }
 

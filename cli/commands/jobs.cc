@@ -235,7 +235,11 @@ ExitCode JobList(Context& context, const Invocation& invocation) {
     for (const auto& job : jobs) {
       std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
       if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
-      if (At(job, "end").is_string()) result = Plain(At(job, "end"));
+      if (At(job, "end").is_string()) {  // as `move --wait` says it
+        result = MoveVerdict(job);
+        result.erase(0, result.starts_with("done, ") || result.starts_with("ended") ? 6 : 0);
+        result.erase(0, result.find_first_not_of(' '));
+      }
       if (At(job, "angle_rad").is_number())
         result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
       const auto tick = [&](const char* key) {

@@ -15,6 +15,7 @@
 #include "cli/grammar/units.h"
 #include "cli/print/terminal_graphics.h"
 #include "core/files/lower_suffix.h"
+#include "core/files/names.h"
 #include "core/files/output_file.h"
 #include "core/files/read_file.h"
 #include "core/protocol/plot_table.h"
@@ -58,7 +59,7 @@ std::string CheckedSuffix(const std::string& output, const std::string& name) {
     throw CliError(
         kUsage, fmt::format("-o {}: a picture ends in {}", output, fmt::join(kPlotSuffixes, ", ")),
         fmt::format("regrasp plot {} -o {}", name,
-                    fs::path(output).replace_extension(".png").string()));
+                    ShellWord(fs::path(output).replace_extension(".png").string())));
   return suffix;
 }
 
@@ -84,7 +85,9 @@ ExitCode PlotRuns(Context& context, const Invocation& invocation) {
   if (context.out().format() == Format::kJson) words.push_back("--json");
   if (context.options().quiet) words.push_back("--quiet");
   const ExitCode code = RunHelper(words, out);
-  if (code == kOk && invocation.Has("show")) context.out().Add(DrawPicture(context, out));
+  // Of a damaged file the picture is there, too.
+  if ((code == kOk || code == kFailed) && invocation.Has("show"))
+    context.out().Add(DrawPicture(context, out));
   return code;
 }
 

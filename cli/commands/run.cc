@@ -14,7 +14,7 @@
 namespace regrasp::cli {
 namespace {
 
-constexpr const char* kHelp = "regraspd --help";
+constexpr const char* kHelp = "regrasp help up";
 constexpr const char* kGroup = "Run";
 
 /// Options that go to the daemon as they are.

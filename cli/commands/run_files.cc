@@ -12,6 +12,7 @@
 #include "cli/grammar/units.h"
 #include "core/common/count_text.h"
 #include "core/files/lower_suffix.h"
+#include "core/files/names.h"
 #include "core/mcap/without_end.h"
 
 namespace regrasp::cli {
@@ -114,9 +115,9 @@ Invocation Checked(const Invocation& invocation) {
 void RefuseStandardOutput(const Invocation& invocation, const char* what,
                           const std::string& instead) {
   if (invocation.Text("output") != "-") return;
-  throw CliError(
-      kUsage, fmt::format("-o -: {} is not written to standard output", what),
-      fmt::format("regrasp {} {} {}", invocation.command->words, invocation.Text("run"), instead));
+  throw CliError(kUsage, fmt::format("-o -: {} is not written to standard output", what),
+                 fmt::format("regrasp {} {} {}", invocation.command->words,
+                             ShellWord(invocation.Text("run")), instead));
 }
 
 ExitCode Replay(Context& context, const Invocation& invocation) {
@@ -142,8 +143,8 @@ ExitCode Video(Context& context, const Invocation& invocation) {
   const std::string out = invocation.Text("output"), suffix = LowerSuffix(out);
   if (suffix != ".mp4" && suffix != ".gif")
     throw CliError(kUsage, fmt::format("-o {}: a film ends in .mp4 or .gif", out),
-                   fmt::format("regrasp video {} -o {}", invocation.Text("run"),
-                               fs::path(out).replace_extension(".mp4").string()));
+                   fmt::format("regrasp video {} -o {}", ShellWord(invocation.Text("run")),
+                               ShellWord(fs::path(out).replace_extension(".mp4").string())));
   return Run(context, Checked(invocation));
 }
 

@@ -153,6 +153,18 @@ bool WantsJson(int argc, const char* const* argv) {
   return false;
 }
 
+namespace {
+
+/// The last --json=… as it was typed: a 0 is read as "off".
+std::string JsonWord(int argc, const char* const* argv) {
+  std::string typed = "--json";
+  for (int i = 1; i < argc && std::string_view(argv[i]) != "--"; ++i)
+    if (std::string_view(argv[i]).starts_with("--json=")) typed = argv[i];
+  return typed;
+}
+
+}  // namespace
+
 Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   CLI::App app("regrasp");
   app.set_help_flag("-h,--help");
@@ -270,7 +282,7 @@ Invocation Parse(int argc, const char* const* argv, GlobalOptions* options) {
   invocation.params = Json::object();
   try {
     if (json != 0 && json != 1) {
-      throw CliError(kUsage, fmt::format("--json={}: this version writes format 1", json),
+      throw CliError(kUsage, fmt::format("{}: this version writes format 1", JsonWord(argc, argv)),
                      "regrasp --json=1 " + scope);
     }
     options->json = json == 1;

@@ -11,6 +11,7 @@
 #include "cli/hand/progress.h"
 #include "cli/hand/scenario_file.h"
 #include "cli/hand/sheet.h"
+#include "core/files/names.h"
 #include "core/posture/grasp_search.h"
 #include "core/posture/hand_guess.h"
 #include "core/posture/scenario_text.h"
@@ -249,6 +250,7 @@ class Maker {
     sheet.report = report_;
     sheet.best = best_;
     sheet.ball = object_.empty();
+    sheet.ball_mm = size_mm_;
     if (!ball_.urdf.empty()) sheet.ball_file = ball_.name;
     sheet.ways = ways_;
     return sheet;

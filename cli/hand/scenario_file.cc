@@ -42,7 +42,7 @@ void ScenarioFile::Check() const {
   const fs::path directory = path_.parent_path().empty() ? "." : path_.parent_path();
   if (!fs::is_directory(directory, ignored))
     throw Failure(ExitCode::kIo, fmt::format("{}: no such directory", directory.string()),
-                  "mkdir -p " + directory.string());
+                  "mkdir -p " + ShellWord(directory.string()));
   try {
     CheckWritable(path_.string(), Draft::Existing::kKeep);
   } catch (const WriteError& error) {

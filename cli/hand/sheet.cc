@@ -17,12 +17,17 @@ constexpr double kOpposes = 0.05;  // [N]: a load margin that counts
 
 std::string Sheet::ScoreLine() const {
   const BallGrasp& g = best.grasp;
-  std::string line = fmt::format("Load margin {:.2f} N; without", g.load_margin);
+  std::string line =
+      fmt::format("Load margin {:.2f} N{}; without", g.load_margin, ball ? "" : " of " + StandIn());
   for (std::size_t f = 0; f < best.model.hand.fingers.size(); ++f)
     line += fmt::format("{} {} {:.2f}", f == 0 ? "" : ",", best.model.hand.fingers[f].name,
                         std::max(0.0, g.margin_without[f]));
   return line + fmt::format(" N. Room to limits {:.2f}, clearance {:.1f} mm.", g.room,
                             1e3 * std::min(g.clearance, best.way.gap));
+}
+
+std::string Sheet::StandIn() const {
+  return fmt::format("the ball of {:g} mm that stands for the object", ball_mm);
 }
 
 std::string Sheet::Tried() const {
@@ -42,21 +47,45 @@ std::string Sheet::Tried() const {
 Json Sheet::Used() const {
   const UseTrial& use = best.use;
   if (!use.any()) return nullptr;
+  Json stayed = Json::object();
+  for (std::size_t f = 0; f < best.model.hand.fingers.size(); ++f)
+    stayed[best.model.hand.fingers[f].name] = use.stayed[f];
   return {{"explorations", use.explorations},
           {"rose", use.rose},
+          {"may_not_leave", stayed},
           {"turns", use.turns},
           {"turned", use.turned},
           {"clean", use.clean}};
 }
 
+/// What was tried with it and does not work.
+void Sheet::AddUseRemarks(std::vector<std::string>* remarks) const {
+  const UseTrial& use = best.use;
+  if (!use.any()) return;
+  const char* object = ball ? "the ball" : "the object";
+  if (use.turned == 0)
+    remarks->push_back(
+        fmt::format("none of {} turns was completed: the hand holds {}, and does not turn it",
+                    use.turns, object));
+  if (2 * use.rose < use.explorations)
+    remarks->push_back(
+        fmt::format("exploring raised phi in {} of {} only", use.rose, use.explorations));
+  for (std::size_t f = 0; f < best.model.hand.fingers.size(); ++f)
+    if (use.stayed[f] > 0)
+      remarks->push_back(
+          fmt::format("{} may not leave in {} of {}: without it the others hold too little of {}",
+                      best.model.hand.fingers[f].name, use.stayed[f], use.turns, object));
+}
+
 std::vector<std::string> Sheet::Remarks() const {
   std::vector<std::string> remarks;
   const BallGrasp& g = best.grasp;
-  const char* held = ball ? "the ball" : "the object";
+  const std::string held = ball ? "the ball" : StandIn();
   if (g.load_margin < kOpposes)
     remarks.push_back(fmt::format(
         "no finger opposes the others: the fingertips cannot hold {} against every small push",
         held));
+  AddUseRemarks(&remarks);
   for (const std::string& name : left_out)
     remarks.push_back(
         fmt::format("{} is left out and locked: with it no grasp was found that holds", name));
@@ -98,18 +127,28 @@ Answer Sheet::Tell() const {
   const std::vector<std::string> remarks = Remarks();
   Answer answer;
   Json fingers = Json::array();
-  std::string table = fmt::format("\n  {:<10} {:>14} {:>18}  {}", "finger", "rho without [N]",
-                                  "manipulability", "tip");
+  // phi as `quality` tells it.
+  std::string table = fmt::format("\n  {:<10} {:>15}{} {:>14}  {}", "finger",
+                                  ball ? "rho without [N]" : "ball: rho w/o [N]",
+                                  ball ? "" : "  held: rho w/o [N]", "phi [1e-4 m3]", "tip");
   for (std::size_t f = 0; f < best.model.hand.fingers.size(); ++f) {
     const Finger& finger = best.model.hand.fingers[f];
     const std::string& tip = guess.layout.fingers[f].tip_link;
-    fingers.push_back({{"name", finger.name},
-                       {"tip_link", tip},
-                       {"load_margin_without_n", std::max(0.0, g.margin_without[f])},
-                       {"manipulability", g.manipulability[f]},
-                       {"opposing", static_cast<int>(f) == g.opposing}});
-    table += fmt::format("\n  {:<10} {:>14.2f} {:>18.2e}  {}{}", finger.name,
-                         std::max(0.0, g.margin_without[f]), g.manipulability[f], tip,
+    fingers.push_back(
+        {{"name", finger.name},
+         {"tip_link", tip},
+         {"load_margin_without_n", std::max(0.0, g.margin_without[f])},
+         {"held_load_margin_without_n", best.trial.held ? Json(best.trial.without_n[f]) : Json()},
+         {"manipulability", g.manipulability[f]},
+         {"phi", 1e4 * g.manipulability[f]},
+         {"opposing", static_cast<int>(f) == g.opposing}});
+    const std::string as_held = ball ? ""
+                                : best.trial.held
+                                    ? fmt::format(" {:>20.2f}", best.trial.without_n[f])
+                                    : fmt::format(" {:>20}", "-");
+    table += fmt::format("\n  {:<10} {:>{}.2f}{} {:>14.3f}  {}{}", finger.name,
+                         std::max(0.0, g.margin_without[f]), ball ? 15 : 17, as_held,
+                         1e4 * g.manipulability[f], tip,
                          static_cast<int>(f) == g.opposing ? "    opposing" : "");
   }
   answer.json = {{"file", file.string()},
@@ -119,6 +158,8 @@ Answer Sheet::Tell() const {
                  {"seed", seed},
                  {"score", g.score},
                  {"load_margin_n", g.load_margin},
+                 {"ball_m", 1e-3 * ball_mm},
+                 {"held_load_margin_n", best.trial.held ? Json(best.trial.with_all_n) : Json()},
                  {"fingers", fingers},
                  {"room_to_limits", g.room},
                  {"clearance_m", std::min(g.clearance, best.way.gap)},
@@ -131,10 +172,10 @@ Answer Sheet::Tell() const {
                  {"remarks", remarks},
                  {"notes", guess.notes}};
   answer.text = fmt::format(
-      "{}: load margin {:.2f} N, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
+      "{}: load margin {:.2f} N{}, room to joint limits {:.2f}, clearance {:.1f} mm{}\n  {}\n  "
       "stepper {}: {}",
-      ShownText(file.string()), g.load_margin, g.room, 1e3 * std::min(g.clearance, best.way.gap),
-      table, Tried(), stepper, best.choice.reason);
+      ShownText(file.string()), g.load_margin, ball ? "" : " of " + StandIn(), g.room,
+      1e3 * std::min(g.clearance, best.way.gap), table, Tried(), stepper, best.choice.reason);
   if (!ball_file.empty())
     answer.text +=
         fmt::format("\n  {} beside it: a ball of {:g} mm and {:g} g", ShownText(ball_file),

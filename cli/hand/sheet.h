@@ -23,6 +23,7 @@ struct Sheet {
   Found best;
   bool ball = true;       ///< is what is held; otherwise an object that is laid into the grasp
   std::string ball_file;  ///< of a ball of its own, beside the scenario; empty: it ships
+  double ball_mm = 0;     ///< across; of the one that stands for the object
   int ways = 0;           ///< to lay it in, that were tried
 
   /// A comment for the scenario: what the grasp is worth.
@@ -30,9 +31,11 @@ struct Sheet {
   Answer Tell() const;
 
  private:
+  std::string StandIn() const;
   std::string Tried() const;
   Json Used() const;  ///< null where it was not tried
   std::vector<std::string> Remarks() const;
+  void AddUseRemarks(std::vector<std::string>* remarks) const;
 };
 
 }  // namespace regrasp::hand

@@ -62,10 +62,13 @@ HoldTrial TryToHold(const LoadedScenario& model, Stepper stepper, std::uint64_t 
   Frame frame;
   session.Snapshot(&frame, false);
   const bool none_leaves = model.hand.num_fingers() < kFewestToRegrasp;
-  trial.margin_n = none_leaves ? frame.stability.load_margin : 1e9;
-  for (int f = 0; !none_leaves && f < model.hand.num_fingers(); ++f)
-    trial.margin_n =
-        std::min(trial.margin_n, frame.fingers[static_cast<std::size_t>(f)].load_margin_without);
+  trial.with_all_n = frame.stability.load_margin;
+  trial.margin_n = none_leaves ? trial.with_all_n : 1e9;
+  for (std::size_t f = 0; f < model.hand.fingers.size(); ++f) {
+    const double margin = frame.fingers[f].load_margin_without;
+    trial.without_n[f] = std::max(0.0, margin);
+    if (!none_leaves) trial.margin_n = std::min(trial.margin_n, margin);
+  }
   return trial;
 }
 
@@ -84,8 +87,14 @@ void Found::Try(std::uint64_t seed) {
   trial = TryToHold(model, choice.stepper, seed, kHold);
   for (int k = 1; k < kTrials && trial.held; ++k) {
     const HoldTrial next = TryToHold(model, choice.stepper, seed + static_cast<unsigned>(k), kHold);
-    trial = {next.held, next.end, std::max(trial.moved_m, next.moved_m),
-             std::min(trial.margin_n, next.margin_n), trial.seeds + next.seeds};
+    trial.held = next.held;
+    trial.end = next.end;
+    trial.moved_m = std::max(trial.moved_m, next.moved_m);
+    trial.margin_n = std::min(trial.margin_n, next.margin_n);
+    trial.seeds += next.seeds;
+    trial.with_all_n = std::min(trial.with_all_n, next.with_all_n);
+    for (std::size_t f = 0; f < trial.without_n.size(); ++f)
+      trial.without_n[f] = std::min(trial.without_n[f], next.without_n[f]);
   }
 }
 

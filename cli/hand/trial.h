@@ -2,6 +2,7 @@
 
 /// Tries a scenario in simulation: what its posture is worth.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -33,6 +34,9 @@ struct HoldTrial {
   double margin_n = 0;  ///< least load margin without a finger, as the controller sees it; of a
                         ///< hand whose fingers cannot leave, with all
   int seeds = 0;        ///< with which it held
+  /// Load margins of the object as it is held, with all fingers and without each: the least [N].
+  double with_all_n = 0;
+  std::array<double, kMaxFingers> without_n{};
 };
 
 inline constexpr double kHeldWithin = 0.010;  ///< an object that moves farther has slipped [m]

@@ -4,6 +4,7 @@
 #include <functional>
 #include <future>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/hand/trial.h"
@@ -40,9 +41,12 @@ UseTrial UseOnce(const LoadedScenario& model, Stepper stepper, std::uint64_t see
     explore.type = CommandType::kExplore;
     explore.finger = f;
     explore.seed = seed;
-    const ExploreResult result = Run(session, explore, kLongestExploration).explore;
+    const JobRecord job = Run(session, explore, kLongestExploration);
+    const ExploreResult& result = job.explore;
     if (session.state() == SessionState::kFaulted) return trial;
     if (grasped.held() && result.phi_true_final > result.phi_true_initial) ++trial.rose;
+    if (std::string_view(job.error).find("may not leave") != std::string_view::npos)
+      ++trial.stayed[static_cast<std::size_t>(f)];
     session.Load(state);
   }
   Command rotate;
@@ -63,6 +67,7 @@ UseTrial UseOnce(const LoadedScenario& model, Stepper stepper, std::uint64_t see
 UseTrial& UseTrial::operator+=(const UseTrial& more) {
   explorations += more.explorations;
   rose += more.rose;
+  for (std::size_t f = 0; f < stayed.size(); ++f) stayed[f] += more.stayed[f];
   turns += more.turns;
   turned += more.turned;
   clean += more.clean;

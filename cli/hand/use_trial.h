@@ -2,8 +2,10 @@
 
 /// Tries what a grasp is made for: each finger explores, and the object turns once.
 
+#include <array>
 #include <cstdint>
 
+#include "core/common/limits.h"
 #include "core/hand/scenario.h"
 #include "core/world/world.h"
 
@@ -12,9 +14,11 @@ namespace regrasp::hand {
 struct UseTrial {
   int explorations = 0;  ///< by Algorithm 1, one a finger and seed
   int rose = 0;          ///< of them, at the end of which phi is higher (noise-free)
-  int turns = 0;         ///< of 360° about the palm's -z, one a seed
-  int turned = 0;        ///< of them, that were completed
-  int clean = 0;         ///< of those, with the object within kCleanOffset and kCleanTilt
+  /// Of them, refused because the finger may not leave; by finger.
+  std::array<int, kMaxFingers> stayed{};
+  int turns = 0;   ///< of 360° about the palm's -z, one a seed
+  int turned = 0;  ///< of them, that were completed
+  int clean = 0;   ///< of those, with the object within kCleanOffset and kCleanTilt
 
   bool any() const { return turns > 0; }
   UseTrial& operator+=(const UseTrial& more);

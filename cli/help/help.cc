@@ -88,7 +88,10 @@ std::string HelpText(const std::string& words, const Output& out) {
   const auto found = FindCommands(words);
   if (found.empty()) {
     std::vector<std::string_view> names;
-    for (const auto& command : Commands()) names.push_back(command.words);
+    for (const auto& command : Commands()) {  // or the first word of several
+      names.push_back(command.words);
+      names.push_back(names.back().substr(0, names.back().find(' ')));
+    }
     const auto nearest = NearestName(words, names);
     throw CliError(kUsage, fmt::format("no command '{}'", words),
                    nearest.empty() ? "regrasp help" : fmt::format("regrasp help {}", nearest));

@@ -102,6 +102,10 @@ constexpr const char* kEnd = R"(# ENVIRONMENT
 
 # FILES
 
+What is cheap to make again replaces a file of its name: *plot -o*, *shape -o*, *param save* and
+*checkpoint save*, which says so. What holds a run or took long refuses a name that is taken:
+*record start*, *export*, *video*, *hand new*.
+
 _$XDG\_RUNTIME\_DIR/regrasp/regrasp.sock_, _/run/regrasp/regrasp.sock_, _/tmp/regrasp-UID/regrasp.sock_
 	The socket: the first that is there.
 

@@ -76,12 +76,13 @@ ExitCode VideoCommand(const Command& command) {
          {"duration_s", result.duration_s},
          {"made_in_s", made_in_s},
          {"codec", result.codec},
+         {"complete", window.file().complete},
          {"differences", differences},
          {"lost", LossesJson(window.file().lost)}},
         fmt::format("{}: {}, {:.1f} s, {}, made in {:.1f} s ({:.2g} times real time)", out,
                     CountText(result.frames, "frame"), result.duration_s, result.codec, made_in_s,
                     result.duration_s / made_in_s) +
-            LossesText(window.file().lost));
+            EndText(window.file().complete) + LossesText(window.file().lost));
   return window.file().lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
@@ -93,11 +94,11 @@ ExitCode PlotCommand(const Command& command) {
   options.dpi = command.Number("--dpi", 0);
   options.with_title = !command.Has("--no-title");
   const std::string& out = command.options.at("--output");
-  for (const std::string& note :
-       PlotRuns(command.files, command.options.at("--name"), options, out))
-    Note(note);
-  Print(command, {{"path", out}}, out);
-  return ExitCode::kOk;
+  const PlotResult result = PlotRuns(command.files, command.options.at("--name"), options, out);
+  for (const std::string& note : result.notes) Note(note);
+  Print(command, {{"path", out}, {"complete", result.complete}, {"lost", LossesJson(result.lost)}},
+        out);
+  return result.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace

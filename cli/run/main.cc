@@ -9,7 +9,6 @@
 #include "cli/run/program.h"
 #include "cli/run/replay_run.h"
 #include "core/common/count_text.h"
-#include "core/mcap/without_end.h"
 
 namespace regrasp::run {
 namespace {
@@ -29,10 +28,6 @@ OnState Pace(const Command& command) {
     const std::chrono::duration<double> due((time_s - start->time_s) / factor);
     std::this_thread::sleep_until(start->wall + std::chrono::duration_cast<Clock::duration>(due));
   };
-}
-
-std::string EndText(bool complete) {
-  return complete ? "" : fmt::format("\n  the file has no end: {}", kWhyWithoutEnd);
 }
 
 ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayResult& result,

@@ -9,8 +9,10 @@
 
 #include "cli/client/errors.h"
 #include "cli/run/run_window.h"
+#include "core/files/names.h"
 #include "core/files/output_file.h"
 #include "core/journal/provenance.h"
+#include "core/mcap/without_end.h"
 #include "snapshots/plots.h"
 #include "snapshots/refused.h"
 
@@ -30,7 +32,7 @@ using cli::CliError;
 std::string Name(const std::string& path) { return fs::path(path).filename().string(); }
 
 std::string PlotCommand(std::string_view plot, const std::string& path) {
-  return fmt::format("regrasp plot {} {}", plot, path);
+  return fmt::format("regrasp plot {} {}", plot, ShellWord(path));
 }
 
 /// Of what has been asked for, not of the picture's file.
@@ -49,7 +51,9 @@ CliError Refusal(const PictureRefused& refused, const std::string& plot, const s
 
 struct Pictured {
   PlotInput input;
-  std::string note;
+  std::vector<std::string> notes;
+  std::vector<McapLoss> lost;
+  bool complete = true;
 };
 
 /// Executes from tick `from` to `end`, or to the end of the job that begins there.
@@ -80,7 +84,13 @@ Pictured Execute(const std::string& path, double dt, std::int64_t from, std::int
   result.input.object = model.object;
   result.input.options.object_name = model.object.name;
   result.input.options.changed = ChangedText(replay.session().parameters(), model);
-  result.note = window.note();
+  if (!window.note().empty()) result.notes.push_back(window.note());
+  result.complete = window.file().complete;
+  result.lost = window.file().lost;
+  if (!result.complete)
+    result.notes.push_back(fmt::format("{} has no end: {}", Name(path), kWhyWithoutEnd));
+  for (const McapLoss& loss : result.lost)
+    result.notes.push_back(fmt::format("{} lost {}", Name(path), LossText(loss)));
   return result;
 }
 
@@ -157,8 +167,8 @@ std::string PicturesOfRuns() {
 
 }  // namespace
 
-std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const std::string& name,
-                                  PlotOptions options, const std::string& out) {
+PlotResult PlotRuns(const std::vector<std::string>& paths, const std::string& name,
+                    PlotOptions options, const std::string& out) {
   const PlotRow* plot = FindPlot(name);
   if (plot == nullptr || plot->of == PlotOf::kIncident)
     throw CliError(ExitCode::kUsage, name + ": a run file has the pictures " + PicturesOfRuns(),
@@ -192,10 +202,14 @@ std::vector<std::string> PlotRuns(const std::vector<std::string>& paths, const s
       throw Refusal(refused, name, paths.front(), options, last_s);
     }
   });
-  std::vector<std::string> notes;
-  for (const Pictured& run : runs)
-    if (!run.note.empty()) notes.push_back(run.note);
-  return notes;
+  PlotResult result;
+  for (const Pictured& run : runs) {
+    for (const std::string& note : run.notes)
+      if (std::ranges::find(result.notes, note) == result.notes.end()) result.notes.push_back(note);
+    result.lost.insert(result.lost.end(), run.lost.begin(), run.lost.end());
+    result.complete = result.complete && run.complete;
+  }
+  return result;
 }
 
 }  // namespace regrasp::run

@@ -15,6 +15,7 @@
 #include "core/hand/model_error.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"
+#include "core/mcap/without_end.h"
 
 namespace regrasp::run {
 namespace {
@@ -46,7 +47,8 @@ std::string WithOtherFile(const Command& command) {
     const auto found = command.options.find(name);
     return found == command.options.end() ? "" : found->second + " ";
   };
-  std::string words = "regrasp " + command.verb + " " + option("--name") + command.file + " ";
+  std::string words =
+      "regrasp " + command.verb + " " + option("--name") + ShellWord(command.file) + " ";
   if (command.Has("--format")) words += "--format " + option("--format");
   return words + "-o OTHER_FILE";
 }
@@ -93,6 +95,10 @@ Json LossesJson(const std::vector<McapLoss>& lost) {
          {"end_s", loss.end != 0 ? Json(static_cast<double>(loss.end) * 1e-9) : Json()},
          {"cause", loss.cause}});
   return list;
+}
+
+std::string EndText(bool complete) {
+  return complete ? "" : fmt::format("\n  the file has no end: {}", kWhyWithoutEnd);
 }
 
 std::string LossesText(const std::vector<McapLoss>& lost) {

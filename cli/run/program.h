@@ -38,6 +38,8 @@ Json TellDifferences(const RunFile& file);
 /// stop. Adds to `told`.
 void TellDifferences(std::string_view config, Json* told);
 Json LossesJson(const std::vector<McapLoss>& lost);
+/// What is said of a file without an end.
+std::string EndText(bool complete);
 std::string LossesText(const std::vector<McapLoss>& lost);
 
 /// Parses, runs what belongs to the verb, and turns exceptions into an error: cli::CliError with

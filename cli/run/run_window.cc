@@ -38,6 +38,16 @@ void RefuseBeginning(double from_s, double end_s) {
       fmt::format("nothing happens from --from {:g} s on: the run ends at {:g} s", from_s, end_s));
 }
 
+void AddLosses(const std::vector<McapLoss>& lost, std::vector<McapLoss>* all) {
+  for (const McapLoss& loss : lost) {
+    const auto same = [&](const McapLoss& other) {
+      return other.offset == loss.offset && other.cause == loss.cause;
+    };
+    if (std::ranges::none_of(*all, same)) all->push_back(loss);
+  }
+  std::ranges::stable_sort(*all, {}, &McapLoss::offset);
+}
+
 std::uint64_t LastTime(const std::string& path, const std::vector<McapChunk>& chunks) {
   std::uint64_t end = 0;
   for (const McapChunk& chunk : chunks) end = std::max(end, chunk.end);
@@ -58,6 +68,7 @@ RunWindow::RunWindow(const std::string& path, Stretch stretch, double lead_s, in
   if (stretch.to_s <= stretch.from_s)
     throw std::runtime_error("nothing happens in this stretch of time");
   stretch_.from_s = std::max(0.0, stretch.from_s - lead_s);
+  FindLosses();
   try {
     if (const auto state = FindState()) {
       replay_ = ReplayFrom(*segment().journal, *state);
@@ -94,6 +105,18 @@ void RunWindow::FindEnd() {
   last_tick_ = std::llround(ticks);
 }
 
+void RunWindow::FindLosses() {
+  if (chunks_.empty()) return;  // no index: all has been read
+  const std::uint64_t begin = FileTime(from_tick()), end = FileTime(end_tick());
+  const auto here = [&](const McapChunk& chunk) {
+    return chunk.end >= begin && chunk.start <= end;
+  };
+  AddLosses(ReadMcap(
+                path_, [](const McapMessage&) {}, here)
+                .lost,
+            &file_.lost);
+}
+
 std::optional<RunSavedState> RunWindow::FindState() const {
   const std::uint64_t time = FileTime(from_tick());
   std::uint64_t wanted = 0;
@@ -126,11 +149,10 @@ ReplayResult RunWindow::ReplayStretch(const OnState& on_state) {
   ReplayResult result;
   result.segment = number_;
   if (replay_->RunTo(from)) {
-    const McapSummary summary = ReadMcap(path_, compare, [&](const McapChunk& chunk) {
+    ReadMcap(path_, compare, [&](const McapChunk& chunk) {  // what is lost has been found
       return !replay_->diverged() && chunk.topics.contains("state") &&
              chunk.end >= FileTime(from) && chunk.start <= FileTime(end);
     });
-    file_.lost.insert(file_.lost.end(), summary.lost.begin(), summary.lost.end());
     if (!replay_->diverged() && replay_->RunTo(end) && to_the_end()) replay_->ApplyDue();
   }
   result.ticks = replay_->session().tick() - start_tick_;

@@ -22,6 +22,9 @@ struct Stretch {
 /// The time of the last message [ns]. `chunks`: of the file, none where it has no index.
 std::uint64_t LastTime(const std::string& path, const std::vector<McapChunk>& chunks);
 
+/// Adds those that are not there yet; in the order of the file.
+void AddLosses(const std::vector<McapLoss>& lost, std::vector<McapLoss>* all);
+
 class RunWindow {
  public:
   /// Reads the journal and begins at the last saved state that is not after `from_s`; at tick 0
@@ -34,7 +37,8 @@ class RunWindow {
   /// Executes the stretch and compares every state in it that was recorded.
   ReplayResult ReplayStretch(const OnState& on_state);
 
-  const RunFile& file() const { return file_; }  ///< its journals
+  /// Its journals; lost: what could not be read of them, or of the stretch.
+  const RunFile& file() const { return file_; }
   const Segment& segment() const { return file_.segments[static_cast<std::size_t>(number_)]; }
   int number() const { return number_; }  ///< of the segment in the file
   Replay& replay() { return *replay_; }
@@ -56,6 +60,8 @@ class RunWindow {
   /// The last saved state of the segment that is not after the stretch's beginning.
   std::optional<RunSavedState> FindState() const;
   void FindEnd();
+  /// Whatever the stretch holds, samples too, which nothing here needs.
+  void FindLosses();
 
   std::string path_;
   Stretch stretch_;

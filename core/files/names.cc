@@ -1,7 +1,10 @@
 #include "core/files/names.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 namespace regrasp {
 namespace {
@@ -104,6 +107,17 @@ std::string FileNameFault(std::string_view name) {
   if (name.front() == '.' || name.front() == '-')
     return std::string("begins with '") + name.front() + "'";
   return "";
+}
+
+std::string ShellWord(const std::string& word) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) || c >= 0x80 ||
+           std::string_view("._/-+:@,%").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 }  // namespace regrasp

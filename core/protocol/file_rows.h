@@ -106,8 +106,11 @@ inline constexpr std::array kFileRows = {
                "job; continues: the job that goes on after it, or null; from: state or commands; "
                "tick, state_hash; differences: the build that saved it, where that is another, and "
                "parameters that are not the defaults, a sentence each"},
-    MethodSpec{"checkpoint.save", "checkpoint save", "keep this moment, to go on from it later",
-               kCheckpointSave, false, "name, tick, time_s, state, state_hash, commands, path"},
+    MethodSpec{"checkpoint.save", "checkpoint save",
+               "keep this moment, to go on from it later; one of this name is replaced",
+               kCheckpointSave, false,
+               "name, tick, time_s, state, state_hash, commands, path, replaced: whether there was "
+               "one of this name"},
     MethodSpec{"plot", "plot", "draw a picture into the output directory", kPlot, false,
                "file (name), path, bytes, tick"},
     MethodSpec{"record.list",

@@ -114,7 +114,10 @@ inline constexpr std::array kJobRows = {
                "converged, but phi is "
                "more than 2 % lower than where it began); null until it has ended), cycles, "
                "phi_initial, phi_final, phi_true_initial, phi_true_final "
-               "(noise-free, from the simulator, for judging only; null until they are "
+               "(noise-free, from the simulator, for judging only, at the ends of the slide; the "
+               "held grasp "
+               "after it, which `truth` and the picture `comparison` tell, has another phi; null "
+               "until they are "
                "known), path_length_m"},
 };
 

@@ -87,12 +87,14 @@ struct Published {
   JobRecord step;            ///< the running or last step or restore; id 0 = none yet
   std::uint64_t run = 0;     ///< counts resets
   std::size_t commands = 0;  ///< of the run, applied before this state
+  std::uint64_t number = 0;  ///< counts frames
 };
 
 /// An event, or a finished job, and the run it belongs to.
 struct PublishedEvent {
   Event event;
   std::uint64_t run = 0;
+  std::uint64_t frame = 0;  ///< Published::number of the first that shows it
 };
 
 struct ControlConfig {
@@ -191,6 +193,7 @@ class ControlLoop {
   ControlRequest restoring_;        ///< while replay_ is there
   std::unique_ptr<Replay> replay_;  ///< on its way to the checkpoint; the session stands still
   std::uint64_t run_ = 0;
+  std::uint64_t frames_published_ = 0;
   std::size_t applied_ = 0;               ///< commands of the run
   std::vector<Waiting> commands_;         ///< taken, to be applied before the next tick
   std::vector<JobRecord> unsent_jobs_;    ///< finished while the ring was full

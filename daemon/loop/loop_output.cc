@@ -61,7 +61,7 @@ bool ControlLoop::Put(Queue* ring, const T& value) {
 }
 
 void ControlLoop::EmitEvent(const Event& event) {
-  if (Put(&events_, PublishedEvent{event, run_}))
+  if (Put(&events_, PublishedEvent{event, run_, frames_published_ + 1}))
     output_.Notify();
   else
     dropped_.fetch_add(1, std::memory_order_relaxed);
@@ -76,9 +76,10 @@ void ControlLoop::CollectOutput() {
   }
   for (const JobRecord& job : session_->TakeFinishedJobs()) EmitJob(job);
   const auto events = session_->TakeEvents();
-  // The frame first: whoever has seen an event or a finished job also has the frame that shows it.
-  if (!events.empty() || !unsent_jobs_.empty()) Publish();
+  // In this order whoever has a frame has the events that it shows, and whoever has a finished job
+  // has its frame.
   for (const Event& event : events) EmitEvent(event);
+  if (!events.empty() || !unsent_jobs_.empty()) Publish();
   const auto sent = std::find_if(unsent_jobs_.begin(), unsent_jobs_.end(),
                                  [this](const JobRecord& job) { return !jobs_.Push(job); });
   if (sent != unsent_jobs_.begin()) output_.Notify();
@@ -92,6 +93,7 @@ void ControlLoop::Publish() {
   scratch_.step = step_;
   scratch_.run = run_;
   scratch_.commands = applied_;
+  scratch_.number = ++frames_published_;
   publish_due_ = !Put(&frames_, scratch_);
   if (publish_due_) dropped_.fetch_add(1, std::memory_order_relaxed);
   output_.Notify();

@@ -80,9 +80,8 @@ void ControlLoop::Reset(const ControlRequest& request) {
     event.tick = session_->tick();
     std::snprintf(event.text, sizeof event.text, "reset failed: %s", e.what());
   }
-  Publish();  // the new run's first frame is there when the event is: that of another run is not
-              // kept
   EmitEvent(event);
+  Publish();
   pacing_.Restart(Pacing::Clock::now());
 }
 
@@ -166,8 +165,8 @@ void ControlLoop::Adopt(std::unique_ptr<Session> session) {
   event.tick = session_->tick();
   event.value = static_cast<double>(session_->seed());
   std::snprintf(event.text, sizeof event.text, "checkpoint %s restored", checkpoint.name.c_str());
-  Publish();
   EmitEvent(event);
+  Publish();
   restoring_ = {};
 }
 

@@ -200,6 +200,7 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
           struct Work {
             Checkpoint checkpoint;
             std::string failure;
+            bool replaced = false;
           };
           const auto work = std::make_shared<Work>();
           work->checkpoint = {.name = name,
@@ -214,7 +215,8 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
           const auto write = [work, path, most = service.config().budgets.checkpoints,
                               model_text = service.model_text()] {
             try {
-              if (!fs::exists(path) && FilesIn(path.parent_path(), {kSuffix}).size() >= most)
+              work->replaced = fs::exists(path);
+              if (!work->replaced && FilesIn(path.parent_path(), {kSuffix}).size() >= most)
                 throw std::runtime_error(
                     fmt::format("{} checkpoints are in {}, as many as max_checkpoints allows", most,
                                 path.parent_path().string()));
@@ -231,6 +233,7 @@ Outcome CheckpointSave(Service& service, const Params& params, Client&) {
             }
             Json result = HeadJson(work->checkpoint, service.dt());
             result["path"] = path.string();
+            result["replaced"] = work->replaced;
             done(std::move(result), nullptr);
           };
           if (!service.host().Background(write, finish)) {

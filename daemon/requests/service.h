@@ -249,9 +249,10 @@ class Service {
   Host* host_;
   ControlLoop control_;
   JobTable jobs_;
-  std::vector<JobRecord> ended_;        ///< taken from the control thread, not yet taken in
-  std::vector<Published> frames_;       ///< taken, not yet shown
-  std::optional<JournalNews> untaken_;  ///< the same
+  std::vector<JobRecord> ended_;               ///< taken from the control thread, not yet taken in
+  std::vector<Published> frames_;              ///< taken, not yet shown
+  std::vector<PublishedEvent> untold_events_;  ///< taken, their frame is not
+  std::optional<JournalNews> untaken_;         ///< the same
   Journal journal_;
   std::uint64_t run_ = 0;
   std::map<std::uint64_t, std::function<void(const JournalNews&)>> marks_;

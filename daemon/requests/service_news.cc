@@ -23,15 +23,13 @@ constexpr double kSpeedSample_s = 0.25;    // least, for the speed of simulated 
 }  // namespace
 
 std::vector<Sample> Service::Drain() {
-  // The control thread pushes a frame before the events and jobs it shows, so those are taken
-  // first.
+  // The control thread pushes events, the frame that shows them, and the jobs that have ended
+  // there; journal news go before the frames that show them. Taken the other way round, nothing
+  // that shows something else comes without it.
   TakeJobs();
-  std::vector<PublishedEvent> news;
-  for (PublishedEvent event; control_.PopEvent(&event);) news.push_back(event);
-
-  // Journal news go before the frames that show them.
   TakeFrames();
   TakeInNews();
+  for (PublishedEvent event; control_.PopEvent(&event);) untold_events_.push_back(event);
   const std::vector<Published> frames = std::exchange(frames_, {});
 
   const bool fresh = !frames.empty();
@@ -44,7 +42,12 @@ std::vector<Sample> Service::Drain() {
     newest_ = published;
     ++frame_number_;
   }
-  for (const PublishedEvent& published : news) {
+  // Those whose frame is not here yet wait for it.
+  const auto waiting = std::ranges::find_if(
+      untold_events_, [this](const PublishedEvent& told) { return told.frame > newest_.number; });
+  const std::vector<PublishedEvent> later(waiting, untold_events_.end());
+  untold_events_.erase(waiting, untold_events_.end());
+  for (const PublishedEvent& published : std::exchange(untold_events_, later)) {
     const Event& event = published.event;
     if (published.run == newest_.run) {
       history_.Add(event);

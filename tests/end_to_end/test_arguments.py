@@ -56,6 +56,15 @@ class Arguments(Case):
             self.run_one([str(REGRASPD), "--check-config", option, forged], {2, 6})
         self.run_one([str(REGRASP), "config", "show"], {2}, REGRASP_SPEED=forged)
 
+    def test_values_are_named_as_they_were_typed(self):
+        self.assertIn("--json=0: this version", self.regrasp("--json=0", "version").stderr)
+        self.assertIn("--by is 70.71 mm long; allowed are at most 50", self.refused(2, "move", "--by", "50,50,0")[0])
+        self.assertEqual(self.refused(2, "help", "nose")[1], "  try: regrasp help noise")
+
+    def test_hints_can_be_pasted(self):
+        self.assertEqual(self.refused(2, "plot", "incident", "-o", "wh y/u.bmp")[1], "  try: regrasp plot incident -o 'wh y/u.png'")
+        self.assertEqual(self.refused(74, "hand", "new", SOURCE / "models" / "shadow.urdf", "-o", "no dir/x.toml")[1], "  try: mkdir -p 'no dir'")
+
     def test_regrasp(self):
         words, commands = self.words()
         self.assertGreater(len(commands), 20)

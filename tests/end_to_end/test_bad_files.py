@@ -75,6 +75,42 @@ class BadFiles(DaemonCase):
         self.assertTrue(replayed["identical"])
         self.assertEqual(replayed["lost"], lost)
 
+    def test_lost_samples_are_named_by_all_that_execute_the_stretch(self):
+        data = bytearray(self.good.read_bytes())
+        chunks, place = [], 8
+        while data[place] != 15:  # the end of the data
+            if data[place] == 6:
+                chunks.append((place, *struct.unpack_from("<QQ", data, place + 9)))
+            place += 9 + struct.unpack_from("<Q", data, place + 1)[0]
+        place, start, end = next(chunk for chunk in chunks if chunk[1] > 1e9 and b"method" not in data[chunk[0]:chunk[0] + 9 + struct.unpack_from("<Q", data, chunk[0] + 1)[0]])
+        data[place + 8 + struct.unpack_from("<Q", data, place + 1)[0]] ^= 16
+        path = self.file(data)
+        within = ["--from", f"{start * 1e-9 + 0.01}", "--to", f"{end * 1e-9}"]
+        before = ["--from", "0.1", "--to", f"{start * 1e-9 - 0.1}"]
+        cases = {"replay": ["replay", path], "film": ["video", path, "--fps", "5", "-o", self.dir / "made.gif"],
+                 "export": ["export", path, "--format", "csv", "--rate", "50", "-o", self.dir / "made"]}
+        for name, words in cases.items():
+            for stretch, code in ((within, 1), (before, 0), ([], 1)):
+                with self.subTest(name, stretch=stretch):
+                    lost = self.json(*words, *stretch, code=code)["lost"]
+                    self.assertEqual([loss["offset"] for loss in lost], [place] if code else [])
+                    self.remove_made()
+        plot = self.regrasp("plot", "quality", path, "-o", self.dir / "made.png")
+        self.assertEqual((plot.returncode, plot.stdout), (1, f"{self.dir / 'made.png'}\n"))
+        self.assertIn(f"note: bad.mcap lost {9 + struct.unpack_from('<Q', data, place + 1)[0]} bytes at {place} (", plot.stderr)
+        self.assertEqual(len(self.json("plot", "quality", path, "-o", self.dir / "made.png", code=1)["lost"]), 1)
+
+        path = self.file(self.good.read_bytes()[: len(data) // 2])
+        for words in (["replay", path], ["plot", "quality", path, "-o", self.dir / "made.png"], cases["film"]):
+            self.remove_made()
+            said = self.regrasp(*words)
+            self.assertEqual(said.returncode, 0, said.stderr)
+            self.assertIn("has no end: ", said.stdout + said.stderr)
+
+    def remove_made(self):
+        for file in self.dir.glob("made*"):
+            shutil.rmtree(file) if file.is_dir() else file.unlink()  # pylint: disable=expression-not-assigned
+
     def test_a_damaged_beginning_leaves_the_rest(self):
         data = bytearray(self.good.read_bytes())
         place = 8

@@ -202,6 +202,18 @@ class Session(DaemonCase):
         self.assertEqual((record["state"], record["reached"]), ("done", False))
         self.assertEqual(self.json("status")["state"], "holding")
 
+    def test_pictures_of_a_run_in_which_nothing_happened_are_refused(self):
+        for name in ("gait", "quality"):
+            self.assertIn("no time has passed", self.refused(5, "plot", name)[0])
+
+    def test_who_waits_for_a_job_that_dropped_the_object_is_told_why(self):
+        self.expect(0, "param", "set", "object.friction", "0.05")
+        for _ in range(50):  # the answer came before the record at times
+            self.expect(0, "reset", "--seed", "1")
+            record = self.json("grasp", "--wait", code=1)
+            self.assertIsNotNone(record["incident"])
+            self.assertEqual(record, self.json("job", "show", record["id"]))
+
     def test_a_lost_object_is_a_failure(self):
         self.expect(0, "grasp", "--wait")
         self.expect(0, "param", "set", "object.friction", "0.05")

@@ -274,6 +274,15 @@ class Hand(Case):
         told = json.loads(done.stdout)
         self.assertTrue(told["held"], told)
         self.assertEqual(told["object"], "things/flat.urdf")
+        # The search's margins are of a ball; those of the object as it is held are told beside them, and what does not work.
+        self.assertGreater(told["held_load_margin_n"], 0)
+        self.assertTrue(all(finger["held_load_margin_without_n"] >= 0 for finger in told["fingers"]))
+        score = (self.dir / "flat.toml").read_text(encoding="utf-8").splitlines()[1]
+        self.assertIn(f"N of the ball of {1e3 * told['ball_m']:g} mm that stands for the object; without", score)
+        if used := told["used"]:
+            self.assertEqual(any("turns was completed" in remark for remark in told["remarks"]), used["turned"] == 0)
+            for name, count in used["may_not_leave"].items():
+                self.assertEqual(any(f"{name} may not leave in {count} of {used['turns']}" in remark for remark in told["remarks"]), count > 0)
         self.addCleanup(self.regrasp, "down")
         up = self.expect(0, "up", "--hand", self.dir / "flat.toml", "--clock", "lockstep")
         self.assertNotIn("warning: the object", up.stdout)

@@ -90,6 +90,43 @@ class Lockstep(DaemonCase):
                 line, "\n".join(here)))
         self.assertGreater(len(printed), 6)
 
+    def walk(self, page, inexact=()):
+        """Types the lines of the page's walkthroughs that print something, and those before, and compares what is printed. `inexact`: lines
+        that tell how many frames a daemon at full speed has published, or how long something took."""
+        text = (SOURCE / "docs" / page).read_text()
+        exact = self.rounds_as_the_machine_of_readme()
+        self.expect(0, "down")
+        os.chdir(self.dir)
+        self.addCleanup(os.chdir, SOURCE)
+        figures = lambda line: re.sub(r"-?\d+(\.\d+)?", "0", line)  # pylint: disable=unnecessary-lambda-assignment
+        compared = 0
+        for block in re.findall(r"^```\n(\$ regrasp .*?)^```", text, re.M | re.S):
+            for part in re.split(r"^\$ regrasp ", block, flags=re.M)[1:]:
+                words, *printed = part.splitlines()
+                if words.startswith("up "):
+                    self.regrasp("down")
+                    words += f" --models-dir {SOURCE / 'models'} --output-dir {self.dir / 'walked'}"
+                done = self.regrasp(*words.split())
+                self.assertLessEqual(done.returncode, 1, done.stderr)  # 2000 cycles are few
+                if not printed:
+                    continue  # left out there
+                here = done.stdout.replace(str(self.dir / "walked"), "/home/me/.local/state/regrasp").splitlines()
+                shape = figures if not exact or any(word in words for word in inexact) else str
+                self.assertEqual([re.sub(r" +", " ", shape(line)) for line in here], [re.sub(r" +", " ", shape(line)) for line in printed],
+                                 f"docs/{page}: regrasp {words}\n{done.stdout}{done.stderr}")
+                compared += 1
+        return compared
+
+    def test_the_walkthrough_of_runs_prints_these_figures(self):
+        self.assertGreater(self.walk("runs.md", ("record", "replay", "export", "video")), 9)
+        # What a frame more or less does not change: the end of the run.
+        told = re.search(r"s \((\d+) ticks\)", (SOURCE / "docs" / "runs.md").read_text())[1]
+        if self.rounds_as_the_machine_of_readme():
+            self.assertEqual(str(self.json("replay", self.dir / "walked" / "turn.mcap")["ticks"]), told)
+
+    def test_the_walkthrough_of_incidents_drops_the_object(self):
+        self.assertEqual(self.walk("incidents.md"), 2)
+
     def rounds_as_the_machine_of_readme(self):
         """GCC 12, and glibc's functions for processors with fused multiply-add."""
         with open(self.json("checkpoint", "save", "here")["path"], encoding="utf-8") as file:

@@ -201,6 +201,13 @@ TEST_F(Checkpoints, WithADamagedStateAreRefusedByNameButTheCommandsStillLeadTher
   EXPECT_EQ(Hash(), saved["state_hash"]);
 }
 
+TEST_F(Checkpoints, TellThatTheyReplaceOneOfTheirName) {
+  EXPECT_EQ(client->Result("checkpoint.save", {{"name", "here"}})["replaced"], false);
+  Step(5);
+  EXPECT_EQ(client->Result("checkpoint.save", {{"name", "here"}})["replaced"], true);
+  EXPECT_EQ(client->Result("checkpoint.list")["checkpoints"].size(), 1u);
+}
+
 TEST_F(Checkpoints, AreRefusedByName) {
   EXPECT_EQ(client->Error("checkpoint.save", {{"name", "../x"}}), -32602);
   EXPECT_EQ(client->Error("checkpoint.save", {{"name", ""}}), -32602);

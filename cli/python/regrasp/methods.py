@@ -29,9 +29,9 @@ class Methods:
         return self._job("checkpoint.restore", {"name": name, "seed": seed, "reexecute": reexecute})
 
     def checkpoint_save(self, name: str) -> dict:
-        """Keep this moment, to go on from it later.
+        """Keep this moment, to go on from it later; one of this name is replaced.
         name: letters, digits, - _ . ; at most 64, neither . nor - first.
-        Returns name, tick, time_s, state, state_hash, commands, path.
+        Returns name, tick, time_s, state, state_hash, commands, path, replaced: whether there was one of this name.
         """
         return self._ask("checkpoint.save", {"name": name})
 
