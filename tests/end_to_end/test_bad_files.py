@@ -82,7 +82,7 @@ class BadFiles(DaemonCase):
             if data[place] == 6:
                 chunks.append((place, *struct.unpack_from("<QQ", data, place + 9)))
             place += 9 + struct.unpack_from("<Q", data, place + 1)[0]
-        place, start, end = next(chunk for chunk in chunks if chunk[1] > 1e9 and b"method" not in data[chunk[0]:chunk[0] + 9 + struct.unpack_from("<Q", data, chunk[0] + 1)[0]])
+        place, start, end = next(chunk for chunk in chunks if chunk[1] > 1e9 and chunk[2] - chunk[1] > 5e7 and b"method" not in data[chunk[0]:chunk[0] + 9 + struct.unpack_from("<Q", data, chunk[0] + 1)[0]])
         data[place + 8 + struct.unpack_from("<Q", data, place + 1)[0]] ^= 16
         path = self.file(data)
         within = ["--from", f"{start * 1e-9 + 0.01}", "--to", f"{end * 1e-9}"]

@@ -183,8 +183,8 @@ class Session(DaemonCase):
         self.refused(5, "move", "--by", "0,0,3")
         self.refused(2, "move")
         self.expect(0, "grasp", "--wait")
-        for words, part in [(["--by", "0,0,60"], "--by 60: allowed are -50 to 50 MM"), (["--by", "40,40,0"], "offset_m of length 0.0565685 m is too long"),
-                            (["--turn", "150,150,0"], "rotation_rad of length"), (["--by", "0,0,0"], "leave nothing to move"), (["--turn", "1,2"], "--turn")]:
+        for words, part in [(["--by", "0,0,60"], "--by 60: allowed are -50 to 50 MM"), (["--by", "40,40,0"], "--by is 56.57 mm long; allowed are at most 50"),
+                            (["--turn", "150,150,0"], "--turn is 212.1 degrees long; allowed are at most 180"), (["--by", "0,0,0"], "leave nothing to move"), (["--turn", "1,2"], "--turn")]:
             with self.subTest(words):
                 cause, _ = self.refused(2, "move", *words)
                 self.assertIn(part, cause)

@@ -256,7 +256,7 @@ class EndedStepsPaused(EndedSteps, DaemonCase):
         step = self.json("step", "3600000")["job"]
         while self.json("job", "show", job)["state"] == "queued":
             pass
-        self.assertEqual(self.json("stop"), {"job": job, "step": step})
+        self.assertEqual(self.json("stop"), {"job": job, "step": step, "begun": True})
         self.assert_stands(step, "")
 
 
