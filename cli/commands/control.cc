@@ -46,8 +46,8 @@ ExitCode Move(Context& context, const Invocation& invocation) {
       squares += part.get<double>() * part.get<double>();
     const double length = scale * std::sqrt(squares);
     if (length > most * (1 + 1e-9))
-      throw CliError(kUsage, fmt::format("{} is {:.4g} {} long; allowed are at most {:g}", flag,
-                                         length, unit, most));
+      throw CliError(kUsage, fmt::format("{0} is {1:.4g} {2} long; allowed are at most {3:g} {2}",
+                                         flag, length, unit, most));
   };
   check("offset_m", "--by", 1e3, kMostShift_mm, "mm");
   check("rotation_rad", "--turn", kDegrees, 180, "degrees");
