@@ -160,13 +160,8 @@ SessionConfig MakeSessionConfig(const DaemonConfig& config) {
 }
 
 std::vector<std::string> CheckModels(const DaemonConfig& config) {
-  ServiceConfig service = MakeServiceConfig(config);
-  TryOutput(config, &service);
-  const Session session(std::move(service.control.session));
+  const Session session(MakeSessionConfig(config));
   std::vector<std::string> warnings;
-  if (!service.output_fault.empty())
-    warnings.push_back(
-        fmt::format("output_dir {}: {}", service.output_dir.string(), service.output_fault));
   for (const ModelWarning& warning : session.config().model.report.warnings)
     warnings.push_back(warning.Line());
   const auto overlap = OverlapText(session.world().start_overlap(), session.config().model.hand);

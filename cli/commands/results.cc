@@ -18,6 +18,7 @@
 #include "core/files/names.h"
 #include "core/files/output_file.h"
 #include "core/files/read_file.h"
+#include "core/files/shell_word.h"
 #include "core/protocol/plot_table.h"
 
 namespace regrasp::cli {

@@ -13,6 +13,7 @@
 #include "core/common/count_text.h"
 #include "core/files/lower_suffix.h"
 #include "core/files/names.h"
+#include "core/files/shell_word.h"
 #include "core/mcap/without_end.h"
 
 namespace regrasp::cli {

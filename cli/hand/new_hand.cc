@@ -12,6 +12,7 @@
 #include "cli/hand/scenario_file.h"
 #include "cli/hand/sheet.h"
 #include "core/files/names.h"
+#include "core/files/shell_word.h"
 #include "core/posture/grasp_search.h"
 #include "core/posture/hand_guess.h"
 #include "core/posture/scenario_text.h"

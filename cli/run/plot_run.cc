@@ -11,6 +11,7 @@
 #include "cli/run/run_window.h"
 #include "core/files/names.h"
 #include "core/files/output_file.h"
+#include "core/files/shell_word.h"
 #include "core/journal/provenance.h"
 #include "core/mcap/without_end.h"
 #include "snapshots/plots.h"

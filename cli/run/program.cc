@@ -12,6 +12,7 @@
 #include "cli/client/errors.h"
 #include "core/files/names.h"
 #include "core/files/output_file.h"
+#include "core/files/shell_word.h"
 #include "core/hand/model_error.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"

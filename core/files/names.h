@@ -29,7 +29,4 @@ std::string ShownLines(std::string_view text);
 /// True when the text is UTF-8 (of the shortest form, without surrogates).
 bool IsUtf8(std::string_view text);
 
-/// A word as a shell takes it.
-std::string ShellWord(const std::string& word);
-
 }  // namespace regrasp

@@ -1,7 +1,7 @@
 #pragma once
 
 /// How the finger gait (finger_gait.h) asks which finger regrasps next and where it lands. One of
-/// two gaits answers: the paper's table (table_gait.h) or the plan (planned_gait.h). Both are asked
+/// two gaits answers: the paper's table (table_gait.h) or the plan (planned_gait.h). It is asked
 /// in every tick of the phase "choose", with a GaitSituation; both take fingers off the waiting
 /// ones of the GaitCycle; the answer is a GaitChoice, which FingerGait carries out.
 

@@ -76,7 +76,9 @@ class HandReader {
     AddBody(LinkAt(in), X_LG, &hand_.links[static_cast<std::size_t>(link)]);
     if (LinkAt(in).inertial && !WhatLacks(*LinkAt(in).inertial).empty())
       lacking_.emplace(link, &LinkAt(in));
-    for (const Shape& shape : shapes_.Read(LinkAt(in), X_LG, fingertips_->MayBe(in))) {
+    for (const Shape& shape :
+         shapes_.Read(LinkAt(in), X_LG, fingertips_->MayBe(in),
+                      hand_.links[static_cast<std::size_t>(link)].parent_joint < 0)) {
       hand_.links[static_cast<std::size_t>(link)].shapes.push_back(shape);
       shape_origin_[static_cast<std::size_t>(link)].push_back(in);
     }
@@ -96,13 +98,16 @@ class HandReader {
 
   /// What joints are told in another unit.
   void CheckLengths() {
-    constexpr double kFarthest = 2;  // [m]: a hand may stand on an arm, or a table
-    for (const UrdfJoint& joint : file_.joints)
-      if (const double far = joint.X_PJ.translation().norm(); far > kFarthest)
+    constexpr double kFarthest = 2;        // [m]
+    constexpr double kFarthestFixed = 10;  // [m]: a hand may stand in a room
+    for (const UrdfJoint& joint : file_.joints) {
+      const double most = joint.type == UrdfJoint::Type::kFixed ? kFarthestFixed : kFarthest;
+      if (const double far = joint.X_PJ.translation().norm(); far > most)
         problems_.Add(joint.line,
                       "{}: <origin> is {:.4g} m from the parent link; allowed are at most {:g} m; "
                       "lengths are in metres",
-                      JointElement(joint.name), far, kFarthest);
+                      JointElement(joint.name), far, most);
+    }
   }
 
   bool Added(int joint) const { return std::ranges::find(order_, joint) != order_.end(); }

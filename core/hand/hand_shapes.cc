@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLargestLink = 1;  // [m]; what is larger, or farther off, has another unit
+constexpr double kLargestLink = 1;    // [m]; what is larger, or farther off, has another unit
+constexpr double kLargestStand = 10;  // ... of what the palm stands on: an arm, a table, a floor
 
 /// The longest side of a shape that is no mesh.
 double Size(const UrdfGeometry& geometry) {
@@ -61,13 +62,14 @@ bool IsFile(const fs::path& path) {
 
 }  // namespace
 
-std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip) {
+std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip,
+                                    bool stands) {
   std::vector<Shape> shapes;
   const UrdfCollision* tip_box = fingertip ? FarthestIfBoxes(in) : nullptr;
   for (const UrdfCollision& collision : in.collisions) {
     const Isometry3d X = X_LG * collision.X_LG;
     const UrdfGeometry& geometry = collision.geometry;
-    if (!CheckSize(in, collision)) continue;
+    if (!CheckSize(in, collision, stands ? kLargestStand : kLargestLink)) continue;
     Shape shape;
     switch (geometry.kind) {
       case UrdfGeometry::Kind::kSphere:
@@ -109,17 +111,17 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
   return shapes;
 }
 
-bool HandShapes::CheckSize(const UrdfLink& in, const UrdfCollision& collision) {
+bool HandShapes::CheckSize(const UrdfLink& in, const UrdfCollision& collision, double most) {
   const auto add = [&](const char* what, double length) {
     problems_->Add(collision.geometry.line,
                    "{}: <collision> {} {:.4g} m; allowed are at most {:g} m; lengths are in metres",
-                   LinkElement(in.name), what, length, kLargestLink);
+                   LinkElement(in.name), what, length, most);
     return false;
   };
-  if (const double size = Size(collision.geometry); size > kLargestLink)
+  if (const double size = Size(collision.geometry); size > most)
     return add("has a length of", size);
   const double off = collision.X_LG.translation().norm();
-  return off <= kLargestLink || add("lies off its link by", off);
+  return off <= most || add("lies off its link by", off);
 }
 
 fs::path HandShapes::Find(const UrdfLink& in, const UrdfGeometry& geometry) {

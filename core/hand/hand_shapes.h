@@ -25,11 +25,12 @@ class HandShapes {
   /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh, a
   /// disc, or where there are boxes only the farthest of them, is fitted by the capsule or sphere
   /// that its far end needs; else a mesh or a disc is fitted by what comes nearest to all of it.
-  std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip);
+  /// `stands`: what the palm stands on is part of it, and may be larger than a hand.
+  std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip, bool stands);
 
  private:
-  /// Whether a shape is as small, and as near to its link, as those of hands are; else a problem.
-  bool CheckSize(const UrdfLink& in, const UrdfCollision& collision);
+  /// Whether a shape is no larger, and no farther from its link, than `most` [m]; else a problem.
+  bool CheckSize(const UrdfLink& in, const UrdfCollision& collision, double most);
   /// Nothing where the file cannot be read, which is a problem.
   std::optional<Shape> OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
                               bool fingertip);

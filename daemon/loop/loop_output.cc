@@ -80,6 +80,7 @@ void ControlLoop::CollectOutput() {
   // has its frame.
   for (const Event& event : events) EmitEvent(event);
   if (!events.empty() || !unsent_jobs_.empty()) Publish();
+  if (publish_due_) return;  // the jobs wait for a frame that has room
   const auto sent = std::find_if(unsent_jobs_.begin(), unsent_jobs_.end(),
                                  [this](const JobRecord& job) { return !jobs_.Push(job); });
   if (sent != unsent_jobs_.begin()) output_.Notify();

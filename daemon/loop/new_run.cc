@@ -23,6 +23,8 @@ void ControlLoop::CancelWaiting(std::int64_t id, const char* why) {
     job.method = *method;
     job.state = JobState::kCancelled;
     job.end_tick = session_->tick();
+    job.explore.reason = ExploreReason::kCancelled;
+    job.move.end = MoveEnd::kStopped;
     std::snprintf(job.error, sizeof job.error, "%s", why);
     EmitJob(job);
     return true;

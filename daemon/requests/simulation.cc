@@ -206,7 +206,7 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
       {"latency_s", &NoiseLevels::latency_s}};
   for (const auto& [name, level] : kLevels) levels.*level = params.Number(name, levels.*level);
   const double sample_s = std::max(service.dt(), 1 / kSensorRateHz);
-  if (const double gap = levels.dropout_gap_s; gap > 0 && gap < sample_s)
+  if (const double gap = params.Number("dropout_gap_s", 0); gap > 0 && gap < sample_s)
     throw RpcException(
         RpcError{ErrorCode::kInvalidParams,
                  fmt::format("dropout_gap_s = {:g} is shorter than a sample", gap),
