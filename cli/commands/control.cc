@@ -9,6 +9,7 @@
 #include "cli/commands/jobs.h"
 #include "cli/commands/parameters.h"
 #include "cli/grammar/units.h"
+#include "core/protocol/methods.h"
 
 namespace regrasp::cli {
 namespace {
@@ -31,8 +32,6 @@ ExitCode Rotate(Context& context, const Invocation& invocation) {
   return StartJob(context, invocation);
 }
 
-constexpr double kMostShift_mm = 50;  // of the wire's `move`
-
 ExitCode Move(Context& context, const Invocation& invocation) {
   if (invocation.params.empty()) {
     throw CliError(kUsage, "move takes --by (mm), --turn (degrees) or both, not none",
@@ -49,7 +48,7 @@ ExitCode Move(Context& context, const Invocation& invocation) {
       throw CliError(kUsage, fmt::format("{0} is {1:.4g} {2} long; allowed are at most {3:g} {2}",
                                          flag, length, unit, most));
   };
-  check("offset_m", "--by", 1e3, kMostShift_mm, "mm");
+  check("offset_m", "--by", 1e3, 1e3 * kMaxMoveOffset, "mm");
   check("rotation_rad", "--turn", kDegrees, 180, "degrees");
   return StartJob(context, invocation);
 }

@@ -15,7 +15,6 @@
 #include "cli/grammar/units.h"
 #include "cli/print/terminal_graphics.h"
 #include "core/files/lower_suffix.h"
-#include "core/files/names.h"
 #include "core/files/output_file.h"
 #include "core/files/read_file.h"
 #include "core/files/shell_word.h"

@@ -12,7 +12,6 @@
 #include "cli/grammar/units.h"
 #include "core/common/count_text.h"
 #include "core/files/lower_suffix.h"
-#include "core/files/names.h"
 #include "core/files/shell_word.h"
 #include "core/mcap/without_end.h"
 

@@ -11,7 +11,6 @@
 #include "cli/hand/progress.h"
 #include "cli/hand/scenario_file.h"
 #include "cli/hand/sheet.h"
-#include "core/files/names.h"
 #include "core/files/shell_word.h"
 #include "core/posture/grasp_search.h"
 #include "core/posture/hand_guess.h"

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <stdexcept>
-#include <string_view>
 
 #include "cli/hand/hand_command.h"
 #include "core/files/names.h"

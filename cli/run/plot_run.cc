@@ -9,7 +9,6 @@
 
 #include "cli/client/errors.h"
 #include "cli/run/run_window.h"
-#include "core/files/names.h"
 #include "core/files/output_file.h"
 #include "core/files/shell_word.h"
 #include "core/journal/provenance.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 /// Tables with one row for each value of an enumeration, in its order: std::array of a struct with
-/// `id` and `name`.
+/// `name`, and `id` where the order is checked.
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,8 @@
 #pragma once
 
-/// How long what is told of a run may be, where no string may grow. Nothing is cut: a reason has
-/// room for two names and a sentence, an event for a reason and what stands before it.
+/// How long what is told of a run may be, where no string may grow. What is composed of names is
+/// not cut: a reason has room for two of them and a sentence, an event for a reason and what stands
+/// before it.
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,5 @@
 #include "core/files/names.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <optional>
 #include <string_view>

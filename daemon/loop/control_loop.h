@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/journal/replay.h"
+#include "core/protocol/start_words.h"
 #include "core/session/session.h"
 #include "daemon/loop/pacing.h"
 #include "daemon/loop/ring.h"
@@ -75,8 +76,8 @@ enum class ClockMode : std::uint8_t {
   kContinuous,  ///< always, unless paused
   kLockstep,    ///< while a job runs; what happens then depends on the commands alone
 };
-constexpr const char* ClockName(ClockMode clock) {
-  return clock == ClockMode::kLockstep ? "lockstep" : "continuous";
+constexpr std::string_view ClockName(ClockMode clock) {
+  return kClockWords[static_cast<std::size_t>(clock)];
 }
 
 /// One published tick.
@@ -196,7 +197,7 @@ class ControlLoop {
   std::uint64_t frames_published_ = 0;
   std::size_t applied_ = 0;               ///< commands of the run
   std::vector<Waiting> commands_;         ///< taken, to be applied before the next tick
-  std::vector<JobRecord> unsent_jobs_;    ///< finished while the ring was full
+  std::vector<JobRecord> unsent_jobs_;    ///< ended; their frame or the ring had no room yet
   std::vector<JournalNews> unsent_news_;  ///< likewise
   std::uint64_t taken_ = 0;               ///< number of the last request taken
   bool publish_due_ = true;               ///< something changed that the last frame does not show

@@ -41,9 +41,6 @@ void Service::AcceptObject(std::shared_ptr<const ObjectModel> object) {
   Accepted& accepted = Accept();
   accepted.object = std::move(object);
   accepted.warnings.clear();
-  if (!config_.output_fault.empty())
-    accepted.warnings.push_back(fmt::format("output_dir {}: {}; pictures and run files will fail",
-                                            config_.output_dir.string(), config_.output_fault));
   const auto text = OverlapText(overlap, hand());
   if (text.front() != 0)
     accepted.warnings.push_back(text.data() + fmt::format("; grasp will refuse: {}", kFitsObject));

@@ -19,6 +19,15 @@ Json JobShown(const Service& service) {
   return last ? service.JobAnswer(*last) : Json();
 }
 
+/// Of the object where it begins, and of the output directory as it was at the start.
+Json WarningsOf(const Service& service) {
+  Json warnings = service.accepted().warnings;
+  if (const ServiceConfig& config = service.config(); !config.output_fault.empty())
+    warnings.push_back(fmt::format("output_dir {}: {}; pictures and run files will fail",
+                                   config.output_dir.string(), config.output_fault));
+  return warnings;
+}
+
 Json UntilTimes(const Service& service) {
   const Published& newest = service.newest();
   const Frame& frame = newest.frame;
@@ -46,7 +55,7 @@ Json UntilCounts(const Service& service) {
           {"seed", frame.seed},
           {"hand", service.hand().name},
           {"object", service.accepted().object->name},
-          {"warnings", service.accepted().warnings},
+          {"warnings", WarningsOf(service)},
           {"stand_in", frame.stand_in},
           {"holds_alone", HoldsAlone(frame.state, frame.stand_in)},
           {"job", JobShown(service)},

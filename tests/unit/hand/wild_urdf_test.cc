@@ -96,7 +96,7 @@ TEST_F(WildTest, GramsForKilogramsInALinkAreTold) {
   EXPECT_TRUE(told(LoaderTest::Load()));
 }
 
-// Nothing of a hand is as long, whatever it is: no line of a file in millimetres passes.
+// Nothing of a hand is as long, whatever it is: a line of a finger in millimetres does not pass.
 TEST_F(WildTest, MillimetresAreToldOfEveryShapeAndOrigin) {
   const std::pair<const char*, const char*> edits[] = {
       {"radius=\"0.005\"", "radius=\"5\""},
