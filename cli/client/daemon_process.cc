@@ -22,6 +22,7 @@
 #include "cli/client/errors.h"
 #include "cli/client/program.h"
 #include "core/files/problem_list.h"
+#include "core/files/shell_word.h"
 
 namespace regrasp::cli {
 namespace {
@@ -194,7 +195,8 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
         const std::string written{std::istreambuf_iterator<char>(log), {}};
         const std::string cause = DaemonError(written), last = Tail(written, 3);
         const ExitCode exit_code = ExitCodeOf(code);
-        const std::string next = "regraspd --help" + (kept ? ", or cat " + started.log : "");
+        const std::string next =
+            kept ? "regrasp help up, or cat " + ShellWord(started.log) : "regraspd --help";
         if (cause.find('\n') != std::string::npos)
           throw CliError::List(exit_code, "regraspd: " + cause, next);
         throw CliError(exit_code,
@@ -206,7 +208,7 @@ StartedDaemon StartDaemon(const std::string& socket, const std::vector<std::stri
       }
       if (Clock::now() > deadline) {
         throw CliError(kTimeout, fmt::format("regraspd is not ready after {:g} s", timeout_s),
-                       kept ? "cat " + started.log : "regrasp doctor");
+                       kept ? "cat " + ShellWord(started.log) : "regrasp doctor");
       }
       WaitFor(-1, 0, Deadline(0.01));
     }
