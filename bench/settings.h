@@ -45,9 +45,8 @@ inline ParameterSetting ReadSetting(const std::string& text) {
   try {
     setting.value = ReadParameterValue(setting.info(), given);
   } catch (const ParameterError& error) {
-    const std::string what = error.what();
-    const bool told = what.find(error.allowed) != std::string::npos;
-    throw std::runtime_error(told ? what : what + "; allowed: " + error.allowed);
+    const std::string what = error.what(), hint = error.Hint();
+    throw std::runtime_error(hint.empty() ? what : what + "; " + hint);
   }
   return setting;
 }

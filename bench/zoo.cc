@@ -121,7 +121,9 @@ Trial Run(const Options& o, SessionConfig config) {
   options.limit_s = o.limit_s * o.turns;
   options.push_n = o.push;
   const JobRecord job = RunJob(session, command, options);
-  const RotateResult& r = job.rotate;
+  Frame now;  // what it has come to where it was too slow
+  session.Snapshot(&now, false);
+  const RotateResult& r = job.id != 0 ? job.rotate : now.job.rotate;
   trial.shape = JudgeShape(session.felt_surface(), TrueSurface(session.config().model.object));
   trial.done = job.id != 0 && job.state == JobState::kDone;  // by the true angle: TurnedAsAsked
   trial.dropped = r.dropped;
@@ -257,6 +259,22 @@ void Print(const Options& o, const std::vector<Trial>& trials) {
     }
 }
 
+constexpr const char* kHelp =
+    "zoo [OPTION]...    turns objects with seeds and settings side by side\n"
+    "  --objects NAMES       separated by commas; zoo: every zoo_* and cube_* (default)\n"
+    "  --seeds N             of each object (1), from --first N (1) on\n"
+    "  --setting 'NAME: P=V ...'  parameters, noise.LEVEL=V, stepper=NAME; repeatable: compared\n"
+    "  --hand NAME|FILE      (shadow)\n"
+    "  --noise PRESET        (paper)\n"
+    "  --axis X,Y,Z          of the turn, in W (0,0,-1)\n"
+    "  --turns N             (1)\n"
+    "  --tilt DEG            of the hand (the scenario's)\n"
+    "  --push N              force each second [N] (0)\n"
+    "  --limit S             simulated time of a turn, then it is too slow (600)\n"
+    "  --jobs N              processes (2)\n"
+    "  --rows                a line for each trial\n"
+    "  --events              what happens, on standard error\n";
+
 Options Parse(int argc, char** argv) {
   Options o;
   std::string objects = "zoo";
@@ -312,6 +330,7 @@ Options Parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    if (argc > 1 && argv[1] == std::string("--help")) return std::fputs(kHelp, stdout) < 0 ? 74 : 0;
     const Options o = Parse(argc, argv);
     Print(o, RunAll(o));
     return 0;

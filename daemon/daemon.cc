@@ -39,7 +39,9 @@ std::vector<std::filesystem::path> SearchPath(const DaemonConfig& config) {
   } catch (const ModelError& error) {
     const auto origin = config.origins.find("models_dir");
     if (origin == config.origins.end()) throw;
-    throw ModelError(origin->second + ": " + error.what());
+    ModelError named(origin->second + ": " + error.what());
+    named.names_no_model = error.names_no_model;
+    throw named;
   }
 }
 

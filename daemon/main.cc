@@ -235,7 +235,7 @@ int Main(int argc, char** argv) {
     return FailShown(e.what(), "regraspd --print-default-config", ExitCode::kUsage);
   } catch (const ModelError& e) {
     return FailShown(e.what(), "regraspd --check-config",
-                     e.names_no_model() ? ExitCode::kNotFound : ExitCode::kFailed);
+                     e.names_no_model ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const WriteError& e) {
     return FailShown(e.what(), "regraspd --output-dir DIR", ExitCode::kIo);
   } catch (const SocketError& e) {

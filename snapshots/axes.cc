@@ -242,7 +242,8 @@ double DrawTitle(Canvas* canvas, const std::string& title, const std::string& fa
   const double left = narrow ? 14 : 40, room = canvas->width() - 2 * left;
   constexpr double kLeastFacts = 15;  // smaller ones go into another line
   const auto fitted = [&](const std::string& text, double size, bool bold) {
-    return std::min(size, size * room / std::max(1.0, canvas->TextWidth(text, size, bold)));
+    while (size > 1 && canvas->TextWidth(text, size, bold) > room) size -= 0.5;
+    return size;
   };
   double y = narrow ? 24 : 38;
   canvas->Text({left, y}, title, {.size = fitted(title, narrow ? 24 : 28, true), .bold = true});

@@ -30,6 +30,8 @@ Pen PenOfRun(std::size_t run) {
   return kPens[run % kPens.size()];
 }
 
+Pen SensedPenOfRun(std::size_t run) { return {Tint(PenOfRun(run).colour, 0.68), 1.5}; }
+
 /// What the runs have in common, then what is each one's own: "seed 1 · noise paper ·
 /// manipulability: simulated time 2.5 to 6.0 s · combined: ...".
 std::string ComparedFacts(std::span<const std::vector<std::string>> runs,
@@ -114,8 +116,15 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
     if (canvas.narrow()) gain.text = runs[i].label + " " + gain.text;
     gains.push_back(std::move(gain));
   }
-  const LegendEntry sensed = LineEntry("as sensed: paler", {Tint(kInk, 0.68), 1.5}),
-                    threshold = LineEntry("threshold", {kGrey, 2, {12, 7}});
+  const LegendEntry sensed{
+      "as sensed", [n = runs.size()](Canvas* c, Point2 middle) {
+        for (std::size_t i = 0; i < n; ++i) {
+          const Point2 m =
+              middle + Point2(0, 7 * (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)));
+          c->Line(m - Point2(22, 0), m + Point2(22, 0), SensedPenOfRun(i));
+        }
+      }};
+  const LegendEntry threshold = LineEntry("threshold", {kGrey, 2, {12, 7}});
   std::vector<LegendGroup> legends = {{"criterion, noise-free φ", legend},
                                       {"", {sensed}},
                                       {"φ held, start → end", gains},
@@ -150,8 +159,7 @@ void PlotQualityComparison(std::span<const LabelledRun> runs, const HandModel& h
   DrawGrid(&canvas, lower, true);
 
   for (std::size_t i = 0; i < curves.size(); ++i)
-    DrawCurve(&canvas, upper, curves[i].t, curves[i].phi_sensed,
-              {Tint(PenOfRun(i).colour, 0.68), 1.5});
+    DrawCurve(&canvas, upper, curves[i].t, curves[i].phi_sensed, SensedPenOfRun(i));
   const Run& longest =
       *std::max_element(curves.begin(), curves.end(),
                         [](const Run& a, const Run& b) { return a.t.back() < b.t.back(); });

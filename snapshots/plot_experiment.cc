@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTopOfAll = 150, kPanelTitle = 30, kBottom = 90, kLeft = 230, kRight = 40,
                  kGap = 46;
-constexpr double kBetween = 50;  // columns
+constexpr double kBetween = 80;  // columns: room for half a tick value of either
 constexpr double kLabelSize = 18;
 // On a narrow sheet the columns go one below the other, legends to the end.
 constexpr double kNarrowTop = 104, kNarrowMargin = 14, kNarrowGap = 34, kXAxis = 74,

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/common/count_text.h"
 #include "snapshots/plot_experiment.h"
 
 namespace regrasp {
@@ -63,6 +64,13 @@ bool IsSweep(const Json& summary) {
   return !plan.contains("axes") && plan.at("noise").size() > 1 && !plan.contains("cases");
 }
 
+std::string SeedsOf(const Json& plan) {
+  const auto first = plan.at("first_seed").get<std::int64_t>(),
+             number = plan.at("seeds").get<std::int64_t>();
+  return number == 1 ? fmt::format("seed {}", first)
+                     : fmt::format("seeds {} to {}", first, first + number - 1);
+}
+
 ExperimentPicture PictureOf(const Json& summary) {
   const Json& plan = summary.at("experiment");
   const bool rotation = plan.contains("axes");
@@ -73,13 +81,11 @@ ExperimentPicture PictureOf(const Json& summary) {
                   : IsSweep(summary) ? "Exploring with one finger: success against sensor noise"
                                      : "Exploring with one finger: how often it succeeds";
   picture.facts = fmt::format(
-      "{} · noise {} · seeds {} to {} · {} trials · regrasp {}",
-      rotation ? fmt::format("{:.3g} turn{}", plan.at("turns").get<double>(),
-                             plan.at("turns").get<double>() == 1 ? "" : "s")
+      "{} · noise {} · {} · {} · regrasp {}",
+      rotation ? CountText(fmt::format("{:.3g}", plan.at("turns").get<double>()), "turn")
                : "criterion " + plan.at("criterion").get<std::string>(),
-      Joined(plan.at("noise")) + Settings(plan), plan.at("first_seed").get<std::int64_t>(),
-      plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
-      summary.at("trials").get<int>(), plan.at("version").get<std::string>());
+      Joined(plan.at("noise")) + Settings(plan), SeedsOf(plan),
+      CountText(summary.at("trials").get<int>(), "trial"), plan.at("version").get<std::string>());
   struct Measure {
     const char *name, *label;
     double scale;
@@ -128,13 +134,11 @@ PredictionPicture PredictionOf(const Json& summary) {
   PredictionPicture picture;
   picture.title = "What foretells that a gait fails, 0.2 to 1 s ahead";
   picture.facts = fmt::format(
-      "{} runs, {} drops and slips, {} windows before one and {} that hold, noise {}, seeds {} to "
-      "{}, regrasp {}",
+      "{} runs, {} drops and slips, {} windows before one and {} that hold, noise {}, {}, "
+      "regrasp {}",
       prediction.at("runs").get<int>(), prediction.at("failures").get<int>(),
       prediction.at("windows_failing").get<int>(), prediction.at("windows_holding").get<int>(),
-      Joined(plan.at("noise")), plan.at("first_seed").get<std::int64_t>(),
-      plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
-      plan.at("version").get<std::string>());
+      Joined(plan.at("noise")), SeedsOf(plan), plan.at("version").get<std::string>());
   for (const Json& json : prediction.at("predictors")) {
     const std::string name = json.at("title");
     const bool known = std::any_of(picture.predictors.begin(), picture.predictors.end(),

@@ -212,7 +212,7 @@ void PlotGait(std::span<const Frame> history, std::span<const Event> events, con
   }
   DrawEvents(&canvas, panels, panels_top - 22, frames, unplanned);
   if (!legends[1].entries.empty())
-    canvas.Text({left - 12, panels_top - 22}, "events",
+    canvas.Text({left - 20, panels_top - 22}, "events",
                 {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
   if (rotates) {

@@ -8,6 +8,7 @@
 #include "snapshots/axes.h"
 #include "snapshots/gait_strip.h"
 #include "snapshots/measures.h"
+#include "snapshots/moment_labels.h"
 #include "snapshots/plots.h"
 #include "snapshots/timeline.h"
 
@@ -15,7 +16,6 @@ namespace regrasp {
 namespace {
 
 constexpr double kMillimetres = 1e3;
-constexpr int kLabelRows = 3;
 constexpr double kNarrowHeight = 1120;
 
 /// What a finger does, for its strip.
@@ -92,24 +92,6 @@ double DrawHead(Canvas* canvas, const std::string& title, const std::string& fac
   return y;
 }
 
-/// As many of the words as fit, and an ellipsis for the others.
-std::string Shortened(const Canvas& canvas, const std::string& text, double size, double room) {
-  if (canvas.TextWidth(text, size, true) <= room) return text;
-  std::string shorter = text;
-  do {
-    const std::size_t end = shorter.rfind(' ');
-    shorter.resize(end == std::string::npos ? 0 : end);
-  } while (!shorter.empty() && canvas.TextWidth(shorter + " …", size, true) > room);
-  return shorter.empty() ? "" : shorter + " …";
-}
-
-/// Something with a moment and a name.
-struct Moment {
-  double before_s = 0;  ///< negative: before the drop
-  std::string text;
-  Colour colour;
-};
-
 std::vector<Moment> Moments(std::span<const Event> events, const IncidentNote& note,
                             const HandModel& hand, double dt) {
   std::vector<Moment> moments;
@@ -135,44 +117,6 @@ std::vector<Moment> Moments(std::span<const Event> events, const IncidentNote& n
         {first->time_s - note.time_s, names + " lost contact", LookOfFinger(first->finger).colour});
   std::ranges::stable_sort(moments, {}, &Moment::before_s);
   return moments;
-}
-
-/// Of moments in general; one of a finger has its colour.
-const Pen kMomentPen{kInk, 1.6, {6, 4}};
-
-/// A line through everything and a label in one of kLabelRows rows below `y`; a label that finds no
-/// room is left out: the legend says what such a line is. All are within the panels.
-void DrawMoments(Canvas* canvas, std::span<const Panel> panels, double y,
-                 std::span<const Moment> moments) {
-  const Box& area = panels.front().area;
-  std::array<double, kLabelRows> taken;
-  taken.fill(-1e9);
-  const auto at = [&](const Moment& moment) { return panels.front().At(moment.before_s, 0).x; };
-  for (const Moment& moment : moments)
-    canvas->Line({at(moment), y + 6}, {at(moment), panels.back().area.br().y},
-                 {moment.colour, kMomentPen.width, kMomentPen.dash});
-  for (const Moment& moment : moments) {
-    const double x = at(moment);
-    // To the right of its mark, or to the left where there is more room.
-    constexpr double kMark = 12;
-    const double at_right = area.br().x - x - kMark, at_left = x - 8 - kMark;
-    const bool left = canvas->TextWidth(moment.text, 18, true) > at_right && at_left > at_right;
-    const std::string text = Shortened(*canvas, moment.text, 18, left ? at_left : at_right);
-    const double width = canvas->TextWidth(text, 18, true) + kMark;
-    const double from = left ? x - width : x;
-    const auto row = std::ranges::find_if(taken, [from](double end) { return end < from; });
-    if (row != taken.end()) {
-      const double line = y + 24.0 * static_cast<double>(row - taken.begin());
-      *row = from + width + 8;
-      canvas->Mark(Marker::kDown, {x, line}, 5, moment.colour);
-      canvas->Text({left ? x - kMark : x + kMark, line}, text,
-                   {.size = 18,
-                    .colour = Shade(moment.colour, 0.15),
-                    .align_x = left ? AlignX::kRight : AlignX::kLeft,
-                    .bold = true,
-                    .halo = 2});
-    }
-  }
 }
 
 /// The letter in a disc of the finger's colour.
@@ -229,11 +173,14 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   const double strip = std::min(24.0, 150.0 / std::max(1, n)), strips = y;
   const double fingers_top = strips + (gait ? 64 : 34);
   const double labels = fingers_top + n * (strip + 4) + 16;
-  const double panels_top = labels + 24 * kLabelRows - 6;
-  const double room = bottom - panels_top - 2 * 22;
-
   const Axis time =
       NiceAxis(before.front(), 0, canvas.narrow() ? 5 : 9, false, "time before the drop [s]");
+  const auto placed = PlaceLabels(canvas, Panel{{left, 0, width, 1}, time, {}}, moments);
+  if (std::ranges::any_of(placed, [](const MomentLabel& label) { return label.row < 0; }))
+    legends[0].entries.back().text = "event, most are above";
+  const double panels_top = labels + kLabelRow * std::max(1, RowsOf(placed)) - 6;
+  const double room = bottom - panels_top - 2 * 22;
+
   std::vector<std::vector<double>> forces;
   Range force_range;
   force_range.Add(0);
@@ -302,7 +249,7 @@ void PlotIncident(std::span<const Frame> history, std::span<const Event> events,
   }
   const double limit_y = panels[1].At(0, note.margin_limit).y;
   canvas.FillBox({left, limit_y, width, panels[1].area.br().y - limit_y}, Tint(kVermillion, 0.72));
-  DrawMoments(&canvas, panels, labels, moments);
+  DrawMoments(&canvas, panels, labels, moments, placed);
 
   for (int f = 0; f < n; ++f)
     DrawCurve(&canvas, panels[0], before, forces[f], {LookOfFinger(f).colour, 3});

@@ -13,6 +13,7 @@ namespace regrasp {
 namespace {
 
 constexpr Colour kLight{244, 236, 212}, kDark{222, 205, 160};
+constexpr double kNames = 112;  // width of the table's first column
 constexpr std::array<Colour, 3> kAxes = {Colour{190, 60, 50}, Colour{50, 135, 60},
                                          Colour{50, 80, 180}};
 
@@ -57,7 +58,7 @@ void PaintView(Canvas* canvas, const Box& box, const Body& body, const ObjectMod
 
 }  // namespace
 
-void PlotObject(const ObjectModel& object, std::span<const std::string> lines,
+void PlotObject(const ObjectModel& object, std::span<const TableRow> rows,
                 const PlotOptions& options, const std::string& path) {
   Canvas canvas(SizeOf(options), path);
   DrawTitle(&canvas, options.title.empty() ? object.name : options.title,
@@ -75,8 +76,10 @@ void PlotObject(const ObjectModel& object, std::span<const std::string> lines,
     PaintView(&canvas, Box(gap + static_cast<double>(i) * (width + gap), top, width, height), body,
               object, to_viewer[i]);
   double y = top + 30;
-  for (const std::string& line : lines) {
-    canvas.Text({canvas.width() - side_width, y}, line, {.size = 18});
+  for (const TableRow& row : rows) {
+    const double left = canvas.width() - side_width;
+    canvas.Text({left + (row.below ? 16 : 0), y}, row.name, {.size = 18, .colour = kGrey});
+    canvas.Text({left + kNames, y}, row.value, {.size = 18});
     y += 28;
   }
   canvas.Save();

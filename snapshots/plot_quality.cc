@@ -165,7 +165,7 @@ void Draw(Canvas* canvas, std::span<const Frame> frames, std::span<const Event> 
     DrawGrid(canvas, panel, &panel == &panels.back());
   }
   DrawEvents(canvas, panels, strips + 78, frames, events);
-  canvas->Text({left - 12, strips + 78}, "events",
+  canvas->Text({left - 20, strips + 78}, "events",
                {.size = 18, .colour = kGrey, .align_x = AlignX::kRight});
 
   for (int f = 0; f < hand.num_fingers(); ++f) {

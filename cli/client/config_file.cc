@@ -26,9 +26,7 @@ std::string SocketOf(const toml::table& table, const std::string& file) {
     if (key == "parameters" ||
         std::ranges::find(kConfigKeyNames, key.str()) != kConfigKeyNames.end())
       continue;
-    const std::string_view near = NearestName(key.str(), kConfigKeyNames);
-    fail(node, fmt::format("unknown key '{}'{}", key.str(),
-                           near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+    fail(node, fmt::format("unknown key '{}'{}", key.str(), OrNearest(key.str(), kConfigKeyNames)));
   }
   const toml::node* node = table.get("socket");
   if (node == nullptr) return {};

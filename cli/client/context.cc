@@ -69,6 +69,13 @@ Context::Context(const GlobalOptions& options)
            FormatOf(options) == Format::kHuman && WantsColor(options.color, STDOUT_FILENO),
            HasUtf8()) {}
 
+void Context::RefuseCsv(const Invocation& invocation) const {
+  const std::string& words = invocation.command->words;
+  if (options_.csv)
+    throw CliError(kUsage, fmt::format("--csv: '{}' prints no table", words),
+                   "regrasp --json " + words);
+}
+
 Client& Context::client() {
   if (!client_) {
     auto client = std::make_unique<Client>(ClientSocket(options_.socket), timeout_s());

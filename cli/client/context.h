@@ -20,6 +20,9 @@ class Context {
   /// Seconds to wait for one answer.
   double timeout_s() const { return options_.timeout_s.value_or(10.0); }
 
+  /// Throws CliError(kUsage) with --csv, for a command that has no table to print.
+  void RefuseCsv(const Invocation& invocation) const;
+
   /// The connection; made at the first call. Throws CliError(kNoDaemon, kPermission, kTimeout).
   Client& client();
   /// Gives the connection up: the next call makes another.

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "cli/client/context.h"
 #include "cli/experiment/experiments.h"
 #include "cli/experiment/paper.h"
 #include "cli/experiment/summary.h"
 #include "cli/experiment/tables.h"
+#include "cli/grammar/ranges.h"
 #include "cli/grammar/units.h"
 #include "core/protocol/start_words.h"
 
@@ -120,6 +123,32 @@ Arg Number(const char* key, const char* flags, ArgKind kind, const char* metavar
           .default_text = default_text};
 }
 
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// A number with a range of the wire.
+Arg AsOnWire(const char* key, const char* metavar, const char* help,
+             std::pair<double, double> range, const char* default_text) {
+  const std::string flags = std::string("--") + key;
+  return Number(key, flags.c_str(), ArgKind::kNumber, metavar, help, range.first, range.second,
+                default_text);
+}
+
+Arg Turns() { return AsOnWire("turns", "N", "turns, signed", RangeOnWire("rotate", "turns"), "1"); }
+Arg Angle() {
+  return AsOnWire("angle", "DEG", "instead of turns", RangeOnWire("rotate", "angle_rad", kDegree),
+                  "not used");
+}
+Arg Speed() {
+  return AsOnWire("speed", "DEG_S", "speed of the object while it moves",
+                  RangeOnWire("rotate", "speed_rad_s", kDegree), "parameter gait.speed_rad_s");
+}
+Arg Push() {
+  Arg push = AsOnWire("push", "N", "push the object each second, for 0.1 s, in a random direction",
+                      {0, RangeOnWire("push", "force_n").second}, "0");
+  push.unit = "N";
+  return push;
+}
+
 Arg TableFormatArg() {
   Arg arg = TextArg("format", "--format", "NAME", "tables as text, markdown or latex", "text");
   arg.values = {"text", "markdown", "latex"};
@@ -212,15 +241,7 @@ std::vector<CommandSpec> ExperimentCommands() {
       {"experiment rotation", kGroup, "turn the object with many seeds", nullptr,
        With({TextArg("axis", "--axis", "X,Y,Z", "direction in W; all: six; write --axis=-1,0,0",
                      "0,0,-1"),
-             Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -kMostTurns,
-                    kMostTurns, "1"),
-             Number("angle", "--angle", ArgKind::kNumber, "DEG", "instead of turns",
-                    -360 * kMostTurns, 360 * kMostTurns, "not used"),
-             Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
-                    "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
-             Number("push", "--push", ArgKind::kNumber, "N",
-                    "push the object each second, for 0.1 s, in a random direction", 0, kMostPush_n,
-                    "0")},
+             Turns(), Angle(), Speed(), Push()},
             "10", "paper"),
        Experiment},
       {"experiment zoo", kGroup,
@@ -234,13 +255,7 @@ std::vector<CommandSpec> ExperimentCommands() {
                 "others are compared with",
                 "planned,returning"),
             TextArg("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
-            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -kMostTurns,
-                   kMostTurns, "1"),
-            Number("speed", "--speed", ArgKind::kNumber, "DEG_S",
-                   "speed of the object while it moves", 0.1, 500, "parameter gait.speed_rad_s"),
-            Number("push", "--push", ArgKind::kNumber, "N",
-                   "push the object each second, for 0.1 s, in a random direction", 0, kMostPush_n,
-                   "0")},
+            Turns(), Speed(), Push()},
            "5", "paper")),
        Experiment},
       {"experiment prediction", kGroup,
@@ -250,8 +265,7 @@ std::vector<CommandSpec> ExperimentCommands() {
                     "separated by commas, each as it is, pushed and slippery; zoo: all of it",
                     "twelve bodies of all kinds"),
             TextArg("axis", "--axis", "X,Y,Z", "direction in W; write --axis=-1,0,0", "0,0,-1"),
-            Number("turns", "--turns", ArgKind::kNumber, "N", "turns, signed", -kMostTurns,
-                   kMostTurns, "1")},
+            Turns()},
            "2", "paper,coarse")),
        Experiment},
       {"experiment noise-sweep", kGroup,

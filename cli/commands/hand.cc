@@ -6,6 +6,7 @@
 
 #include "cli/client/context.h"
 #include "cli/client/program.h"
+#include "cli/grammar/ranges.h"
 
 namespace regrasp::cli {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 constexpr const char* kGroup = "Models";
 
 ExitCode RunHand(Context& context, const Invocation& invocation) {
+  context.RefuseCsv(invocation);
   const std::string verb = invocation.command->words.substr(std::string("hand ").size());
   std::vector<std::string> arguments = {FindHelper("regrasp-hand"), verb, invocation.Text("file")};
   for (const Arg& arg : invocation.command->args) {
@@ -48,12 +50,17 @@ std::vector<CommandSpec> HandCommands() {
   Arg out = TextArg("output", "-o,--output", "NAME.toml", "the scenario; must not exist");
   any.required = urdf.required = out.required = true;
   const auto number = [](std::string key, std::string metavar, std::string help,
-                         std::string default_text) {
+                         std::string default_text, double min, double max) {
     Arg arg =
         TextArg(key, "--" + key, std::move(metavar), std::move(help), std::move(default_text));
     arg.kind = ArgKind::kNumber;
+    arg.min = min;
+    arg.max = max;
     return arg;
   };
+  Arg seed =
+      number("seed", "N", "of the search: another gives another grasp", "1", 0, kMaxSafeInteger);
+  seed.kind = ArgKind::kInteger;
   return {
       {"hand check", kGroup,
        "what a hand's file says: fingers, limits, fits, warnings, the stepper that suits it",
@@ -64,14 +71,16 @@ std::vector<CommandSpec> HandCommands() {
       {"hand new", kGroup,
        "make a scenario for a hand from its URDF alone: fingers, palm, postures of a grasp",
        nullptr,
-       WithLoadFlags({urdf, out,
-                      TextArg("object", "--object", "NAME|FILE",
-                              "what to grasp instead of a ball: it is turned until it fits"),
-                      number("object-size", "MM",
-                             "diameter of the ball to grasp, or that stands for the object",
-                             "50; with --object up to four that follow from it"),
-                      number("seed", "N", "of the search: another gives another grasp", "1"),
-                      number("tilt", "DEG", "0: palm up, 90: fingers straight down", "65")}),
+       WithLoadFlags(
+           {urdf, out,
+            TextArg("object", "--object", "NAME|FILE",
+                    "what to grasp instead of a ball: it is turned until it fits"),
+            number("object-size", "MM",
+                   "diameter of the ball to grasp, or that stands for the object",
+                   "50; with --object up to four that follow from it", kLeastBall_mm, kMostBall_mm),
+            seed,
+            number("tilt", "DEG", "0: palm up, 90: fingers straight down", "65", -kMostTilt_deg,
+                   kMostTilt_deg)}),
        RunHand},
   };
 }

@@ -13,6 +13,7 @@
 #include "cli/commands/watch.h"
 #include "cli/help/wrap.h"
 #include "cli/top/top.h"
+#include "core/common/count_text.h"
 
 namespace regrasp::cli {
 namespace {
@@ -63,9 +64,9 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     const Json& incident = At(s, "incident");
     if (incident.is_object() && (state == "dropped" || state == "faulted"))
       line("incident", Plain(At(incident, "record")) + "    (regrasp plot incident)");
-    line("daemon", fmt::format("regraspd {} on {}, {} client{}", Plain(At(s, "version")),
-                               context.client().path(), Plain(At(s, "clients")),
-                               At(s, "clients") == 1 ? "" : "s"));
+    line("daemon",
+         fmt::format("regraspd {} on {}, {}", Plain(At(s, "version")), context.client().path(),
+                     CountText(Plain(At(s, "clients")), "client")));
     if (context.options().verbose) {
       line("hash", Plain(At(s, "state_hash")));
       for (const char* key : {"speed", "output_dir", "pid", "uptime_s", "socket"}) {

@@ -85,16 +85,22 @@ void PrintMove(Output& out, const Json& r) {
                        Fixed(At(r, "sim_time_s"), 1)));
 }
 
+/// How a move ended: "reached", "at a joint limit of middle".
+std::string MoveResult(const Json& r) {
+  const std::string end = Plain(At(r, "end")), finger = Plain(At(r, "end_finger"));
+  if (end == "joint_limit") return "at a joint limit of " + finger;
+  if (end == "manipulability") return finger + " is near a singular posture";
+  if (end == "excursion") return finger + " is too far from its first place";
+  if (end == "load_margin") return "the load margin is too small";
+  if (end == "object_stuck") return "the object does not follow";
+  return end;
+}
+
 /// What became of a move that is done: "done, reached", "ended at a joint limit of middle".
 std::string MoveVerdict(const Json& r) {
-  const std::string end = Plain(At(r, "end")), finger = Plain(At(r, "end_finger"));
-  if (end == "reached") return "done, reached";
-  if (end == "joint_limit") return "ended at a joint limit of " + finger;
-  if (end == "manipulability") return "ended, " + finger + " is near a singular posture";
-  if (end == "excursion") return "ended, " + finger + " is too far from its first place";
-  if (end == "load_margin") return "ended, the load margin is too small";
-  if (end == "object_stuck") return "ended, the object does not follow";
-  return "ended: " + end;
+  const std::string end = Plain(At(r, "end"));
+  const char* begin = end == "reached" ? "done, " : end == "joint_limit" ? "ended " : "ended, ";
+  return begin + MoveResult(r);
 }
 
 /// Throws CliError(kRefused) when the job has not begun because the simulation is paused.
@@ -235,11 +241,7 @@ ExitCode JobList(Context& context, const Invocation& invocation) {
     for (const auto& job : jobs) {
       std::string result = At(job, "error").is_string() ? Plain(At(job, "error")) : "";
       if (At(job, "reason").is_string()) result = Plain(At(job, "reason"));
-      if (At(job, "end").is_string()) {  // as `move --wait` says it
-        result = MoveVerdict(job);
-        result.erase(0, result.starts_with("done, ") || result.starts_with("ended") ? 6 : 0);
-        result.erase(0, result.find_first_not_of(' '));
-      }
+      if (At(job, "end").is_string()) result = MoveResult(job);
       if (At(job, "angle_rad").is_number())
         result = Fixed(At(job, "angle_rad"), 1, kDegrees) + std::string(out.Degree());
       const auto tick = [&](const char* key) {

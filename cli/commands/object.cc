@@ -11,6 +11,7 @@ namespace regrasp::cli {
 namespace {
 
 ExitCode Show(Context& context, const Invocation& invocation) {
+  context.RefuseCsv(invocation);
   std::vector<std::string> arguments = {FindHelper("regrasp-object"), "show",
                                         invocation.Text("file")};
   for (const char* flag : {"inertia-from-shape", "force"})

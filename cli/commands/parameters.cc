@@ -13,6 +13,7 @@
 
 #include "cli/client/context.h"
 #include "cli/grammar/units.h"
+#include "core/common/count_text.h"
 #include "core/files/draft.h"
 #include "core/files/names.h"
 #include "core/files/problem_list.h"
@@ -156,7 +157,7 @@ ExitCode Save(Context& context, const Invocation& invocation) {
   }
   const std::size_t count = At(answer, "parameters").size();
   context.Print({{"file", file}, {"count", count}}, [&] {
-    context.out().Line(fmt::format("{}: {} parameter{}{}", file, count, count == 1 ? "" : "s",
+    context.out().Line(fmt::format("{}: {}{}", file, CountText(count, "parameter"),
                                    all          ? ""
                                    : count == 1 ? " that differs from its default"
                                                 : " that differ from their defaults"));
@@ -168,12 +169,7 @@ ExitCode Save(Context& context, const Invocation& invocation) {
 struct ParameterFile {
   Json values = Json::object();
   std::map<std::string, std::uint32_t> lines = {};
-  std::map<std::string, std::uint32_t> outside = {};  ///< of [parameters]
 };
-
-/// The name of no parameter: a file with more than parameters is refused with all that the daemon
-/// finds wrong besides.
-constexpr const char* kOutside = "[outside]";
 
 /// A value as the wire takes it; null for what no parameter can be.
 Json ToWire(const toml::node& node) {
@@ -203,6 +199,21 @@ void ReadTable(const toml::table& table, const std::string& prefix, ParameterFil
   }
 }
 
+/// Throws CliError(kUsage) for what of `all` stands outside of [parameters].
+void RefuseOutside(const std::string& file, const ParameterFile& all) {
+  ProblemList problems;
+  for (const auto& [name, line] : all.lines)
+    if (!name.starts_with("parameters."))
+      problems.Add(static_cast<int>(line),
+                   fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that "
+                               "table is a parameter",
+                               file, line, ShownText(name)));
+  if (problems.empty()) return;
+  CliError refusal(kUsage, problems.Text(), "regrasp param list");
+  refusal.is_list = problems.count() > 1;
+  throw refusal;
+}
+
 ParameterFile ReadFile(const std::string& file) {
   if (::access(file.c_str(), R_OK) != 0)
     throw CliError(::access(file.c_str(), F_OK) == 0 ? kPermission : kNotFound,
@@ -222,10 +233,8 @@ ParameterFile ReadFile(const std::string& file) {
                      "regrasp param save OTHER_FILE, to see one");
     ParameterFile all;
     ReadTable(root, "", &all);
-    for (const auto& [name, line] : all.lines)
-      if (!name.starts_with("parameters.")) read.outside[name] = line;
+    RefuseOutside(file, all);
     ReadTable(*table, "", &read);
-    if (!read.outside.empty()) read.values[kOutside] = nullptr;
   } catch (const toml::parse_error& error) {
     throw CliError(kUsage,
                    fmt::format("{}:{}: {}", file, error.source().begin.line, error.description()),
@@ -245,21 +254,12 @@ CliError Placed(const CliError& error, const std::string& file, const ParameterF
     const int line = line_of(one);  // 0: the daemon does not repeat names of any length
     return fmt::format("{}{}: {}", file, line == 0 ? "" : fmt::format(":{}", line), one.what());
   };
-  if (error.rpc_errors.empty() && error.rpc_param != kOutside)
-    return error.With(placed(error), error.hint);
+  if (error.rpc_errors.empty()) return error.With(placed(error), error.hint);
   ProblemList problems;
-  for (const auto& [name, line] : read.outside)
-    problems.Add(
-        static_cast<int>(line),
-        fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that table "
-                    "is a parameter",
-                    file, line, ShownText(name)));
   for (const CliError& one : error.rpc_errors)
-    if (one.rpc_param != kOutside)
-      problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
+    problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
   problems.AddUnkept(error.rpc_more);
   CliError all = error.With(problems.Text(), "regrasp param list");
-  if (!read.outside.empty()) all.code = kUsage;
   all.is_list = problems.count() > 1;
   return all;
 }

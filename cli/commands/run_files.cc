@@ -6,11 +6,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <system_error>
 
 #include "cli/client/context.h"
 #include "cli/client/program.h"
 #include "cli/grammar/units.h"
 #include "core/common/count_text.h"
+#include "core/common/nearest_name.h"
 #include "core/files/lower_suffix.h"
 #include "core/files/shell_word.h"
 #include "core/mcap/without_end.h"
@@ -63,6 +65,7 @@ ExitCode RecordList(Context& context, const Invocation& invocation) {
 
 ExitCode Run(Context& context, const Invocation& invocation,
              const std::vector<std::string>& defaults = {}) {
+  context.RefuseCsv(invocation);
   const std::string file = FindRun(context, invocation.Text("run"));
   const bool film = invocation.command->words == "video";
   std::vector<std::string> arguments = {FindHelper(film ? "regrasp-film" : "regrasp-run"),
@@ -171,7 +174,15 @@ std::string FindRun(Context& context, const std::string& name) {
   }
   for (const fs::path& path : {directory / name, directory / with_suffix})
     if (fs::exists(path)) return path;
-  throw CliError(kNotFound, fmt::format("no file {} here or in {}", name, directory.string()),
+  std::vector<std::string> names;
+  for (const fs::path& place : {fs::path("."), directory}) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(place, ignored))
+      if (entry.path().extension() == ".mcap") names.push_back(entry.path().stem());
+  }
+  throw CliError(kNotFound,
+                 fmt::format("no file {} here or in {}{}", name, directory.string(),
+                             OrNearest(fs::path(name).stem().string(), names)),
                  "regrasp record list");
 }
 

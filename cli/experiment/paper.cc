@@ -94,6 +94,8 @@ ExitCode Paper(Context& context, const Invocation& invocation) {
   if (invocation.Has("only-paper"))
     results.command.insert(results.command.rfind(" -o "), " --only-paper");
   results.data = "reproduction";
+  results.among_documents =
+      fs::exists(output / "experiments.md") && fs::exists(output / "paper_map.md");
   const fs::path page = output / "reproduction.md";
   WriteFile(page, ReproductionPage(results));
 

@@ -22,7 +22,8 @@ struct PaperResults {
   std::map<std::string, Json> summaries;  ///< Summary() of each part, by its name
   Json parameters;                        ///< of the daemon: name -> value
   std::string date, command;
-  std::string data;  ///< directory of the pictures and tables, relative to the page
+  std::string data;              ///< directory of the pictures and tables, relative to the page
+  bool among_documents = false;  ///< experiments.md and paper_map.md are beside the page
 };
 
 /// The page, Markdown.

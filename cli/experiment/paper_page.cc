@@ -28,6 +28,10 @@ std::string ReproductionPage(const PaperResults& r) {
   const auto picture = [&](const std::string& file, const std::string& caption) {
     return fmt::format("![{}]({}/{})\n\n*{}.*\n\n", caption, r.data, file, caption);
   };
+  const auto document = [&](const char* text, const char* file) {
+    return r.among_documents ? fmt::format("[{}]({})", text, file)
+                             : fmt::format("{} (docs/{} of the source)", text, file);
+  };
   std::string text = fmt::format(
       "# Reproduction report\n\n"
       "Q. Li, R. Haschke, B. Bolder, H. Ritter, *Grasp Point Optimization for Unknown Object "
@@ -36,9 +40,8 @@ std::string ReproductionPage(const PaperResults& r) {
       "each varies the noise and the start. Intervals are Wilson's, 95 %. "
       "A "
       "trial that was refused, dropped or not grasped is no success. *Noise-free* is from the "
-      "simulator, which the controller never sees. What a trial and a column is: "
-      "[experiments](experiments.md); where each line of the paper is in the source: [paper "
-      "map](paper_map.md).\n\n"
+      "simulator, which the controller never sees. What a trial and a column is: {}; where each "
+      "line of the paper is in the source: {}.\n\n"
       "## Claims\n{}\n"
       "Verdict: *yes*, the claim holds in every trial; *partly*, in at least {:.0f} %; *no*, in "
       "fewer. In all: {}.\n\n",
@@ -47,6 +50,7 @@ std::string ReproductionPage(const PaperResults& r) {
       plan.at("first_seed").get<std::int64_t>() + plan.at("seeds").get<std::int64_t>() - 1,
       plan.at("first_seed").get<std::int64_t>() >= kFirstFreshSeed ? " were never used while tuning"
                                                                    : "",
+      document("experiments", "experiments.md"), document("paper map", "paper_map.md"),
       claims.table, 100 * kPartlyShownFrom, claims.count);
   text += "## Figures\n";
   text +=
@@ -62,10 +66,9 @@ std::string ReproductionPage(const PaperResults& r) {
   text += "## Explorations\nNoise `paper`, criterion manipulability.\n\n" +
           ExplorationTable(exploration) + "\n";
   text += picture("exploration/summary.png", "Explorations of every finger");
-  text +=
-      "The best within reach is that of the rays of the [map](experiments.md) of each start: a "
-      "share above "
-      "100 % means that the exploration found its way to a place that no ray met.\n\n";
+  text += "The best within reach is that of the rays of the " + document("map", "experiments.md") +
+          " of each start: a share above "
+          "100 % means that the exploration found its way to a place that no ray met.\n\n";
   text += "From starts whose fingertips are displaced by 3 mm along the surface:\n\n" +
           ExplorationTable(displaced) + "\n";
   text +=
@@ -92,7 +95,8 @@ std::string ReproductionPage(const PaperResults& r) {
     text += picture(part.name + "/summary.png", part.title);
     text += fmt::format("```\n{}\n```\n\n", CommandOf(summary));
   }
-  text += "## Deviations\nEvery one with its place in the source: [paper map](paper_map.md).\n";
+  text += "## Deviations\nEvery one with its place in the source: " +
+          document("paper map", "paper_map.md") + ".\n";
   return text + PaperDeviations(r.parameters);
 }
 

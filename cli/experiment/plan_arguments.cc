@@ -12,6 +12,7 @@
 #include "cli/client/errors.h"
 #include "cli/experiment/plan.h"
 #include "cli/experiment/plan_words.h"
+#include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
 namespace {
@@ -24,8 +25,8 @@ std::vector<std::string> Names(const std::string& text, const std::vector<std::s
   const auto given = NamesIn(text, flag);
   for (const auto& name : given)
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end())
-      throw CliError(kUsage,
-                     fmt::format("{} '{}' is none of {}", flag, name, fmt::join(allowed, ", ")));
+      throw CliError(kUsage, fmt::format("{} '{}' is none of {}{}", flag, name,
+                                         fmt::join(allowed, ", "), OrNearest(name, allowed)));
   std::vector<std::string> names;
   for (const auto& name : allowed)
     if (std::find(given.begin(), given.end(), name) != given.end()) names.push_back(name);

@@ -11,7 +11,9 @@
 
 #include "cli/client/errors.h"
 #include "cli/grammar/grammar.h"
+#include "cli/grammar/ranges.h"
 #include "cli/grammar/units.h"
+#include "core/common/nearest_name.h"
 
 namespace regrasp::cli {
 namespace {
@@ -19,15 +21,24 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s2], as in the scenario
 constexpr const char* kGravityName = "gravity";
 
-/// A number of a case, between `least` and `most`.
-double Limited(const std::string& key, const std::string& value, const char* unit, double least,
-               double most) {
+/// A number of a case within `range`.
+double Limited(const std::string& key, const std::string& value, const char* unit,
+               std::pair<double, double> range) {
   const std::string what = "--case " + key;
   const double number = *unit != '\0' ? ParseQuantity(value, what, unit) : ParseNumber(value, what);
+  const auto [least, most] = range;
   if (number < least || number > most)
     throw CliError(kUsage, fmt::format("{} {}: allowed are {} to {}{}{}", what, value, least, most,
                                        *unit != '\0' ? " " : "", unit));
   return number;
+}
+
+/// Names of parameters, but for gravity's, have a point: this one is no parameter either.
+CliError NoKey(const std::string& key) {
+  const std::vector<std::string> known = {"object", "tilt",      "push",
+                                          "turns",  "criterion", kGravityName};
+  return {kUsage, fmt::format("--case: no key '{}'{}; allowed are {} and names of parameters", key,
+                              OrNearest(key, known), fmt::join(known, ", "))};
 }
 
 void Add(const std::string& key, const std::string& value, Setting* setting) {
@@ -35,18 +46,25 @@ void Add(const std::string& key, const std::string& value, Setting* setting) {
   if (key == "object")
     setting->object = ModelName(value);
   else if (key == "tilt")
-    setting->tilt_deg = Limited(key, value, "deg", -kMostTilt_deg, kMostTilt_deg);
+    setting->tilt_deg = Limited(key, value, "deg", {-kMostTilt_deg, kMostTilt_deg});
   else if (key == "push")
-    setting->push_n = Limited(key, value, "N", 0, kMostPush_n);
+    setting->push_n = Limited(key, value, "N", {0, RangeOnWire("push", "force_n").second});
   else if (key == "turns")
-    setting->turns = Limited(key, value, "", -kMostTurns, kMostTurns);
+    setting->turns = Limited(key, value, "", RangeOnWire("rotate", "turns"));
   else if (key == "criterion")
     setting->criterion = value;
-  else
+  else if (key == kGravityName || key.find('.') != std::string::npos)
     setting->set.emplace_back(key, value);
+  else
+    throw NoKey(key);
 }
 
 }  // namespace
+
+std::pair<double, double> RangeOnWire(const char* method, const char* parameter, double unit) {
+  const ParamSpec& spec = *FindParam(*FindMethod(method), parameter);
+  return {spec.min / unit, spec.max / unit};
+}
 
 std::string ModelName(const std::string& text) {
   return text.find('/') == std::string::npos ? text : std::filesystem::absolute(text).string();

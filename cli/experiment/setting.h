@@ -11,8 +11,8 @@
 
 namespace regrasp::cli {
 
-// What options and cases allow, as the daemon does.
-inline constexpr double kMostTilt_deg = 180, kMostPush_n = 100, kMostTurns = 1000;
+/// The least and the most of a number that a method of the wire takes, in units of `unit` SI.
+std::pair<double, double> RangeOnWire(const char* method, const char* parameter, double unit = 1);
 
 struct Setting {
   std::string object;              ///< name or absolute path; empty: the scenario's

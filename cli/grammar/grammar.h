@@ -27,7 +27,8 @@ struct Arg {
   std::string key;        ///< name on the wire, or a name of our own
   std::string flags;      ///< "--angle", "-o,--output"; empty for a positional one
   std::string metavar;    ///< "DEG", "FINGER"; empty for a flag
-  std::string unit = {};  ///< of the numbers of a vector: "MM"; empty where the metavar names it
+  std::string unit = {};  ///< of the numbers of a vector, or of one: "MM"; empty where the
+                          ///< metavar or the key names it
   ArgKind kind = ArgKind::kText;
   std::string help;
   double scale = 1;                      ///< value on the wire (SI) = typed value * scale

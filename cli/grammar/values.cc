@@ -17,20 +17,30 @@
 namespace regrasp::cli {
 namespace {
 
+/// Of a bare number: the key on the wire tells it, or the word that stands for the value.
+std::string_view UnitOf(const Arg& arg) {
+  constexpr std::pair<std::string_view, std::string_view> kMetavars[] = {
+      {"DEG", "deg"}, {"DEG_S", "deg/s"}, {"MM", "mm"}, {"S", "s"}, {"HZ", "Hz"}};
+  if (const std::string_view unit = UnitOfKey(arg.key); !unit.empty()) return unit;
+  for (const auto& [metavar, unit] : kMetavars)
+    if (arg.metavar == metavar) return unit;
+  return "";
+}
+
 void CheckRange(const Arg& arg, double typed) {
   const double value = typed * arg.scale;
   // Half a rounding of the unit conversion: the limit itself, typed in degrees, is allowed.
   const double slack = 1e-12 * std::abs(value);
   if (value >= arg.min - slack && value <= arg.max + slack) return;
-  const bool named =
-      !arg.unit.empty() || arg.scale != 1 || arg.metavar == "S" || arg.metavar == "HZ";
-  const std::string unit = named ? " " + (arg.unit.empty() ? arg.metavar : arg.unit) : "";
+  const std::string_view own = UnitOf(arg);
+  const std::string unit = own.empty() ? arg.unit : std::string(own);
+  const std::string behind = unit.empty() ? "" : " " + unit;
   const std::string least = LeastText(arg.min / arg.scale);
   throw CliError(kUsage, arg.max >= 1e299
                              ? fmt::format("{} {}: allowed are {}{} and more", ArgName(arg), typed,
-                                           least, unit)
+                                           least, behind)
                              : fmt::format("{} {}: allowed are {} to {}{}", ArgName(arg), typed,
-                                           least, MostText(arg.max / arg.scale), unit));
+                                           least, MostText(arg.max / arg.scale), behind));
 }
 
 /// Whether these digits are an integer of at most 2^53 in magnitude.
@@ -40,16 +50,6 @@ bool IsExact(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && rest == text.data() + text.size() && value <= kMost &&
          value >= -kMost;
-}
-
-/// Of a bare number: the key on the wire tells it, or the word that stands for the value.
-std::string_view UnitOf(const Arg& arg) {
-  constexpr std::pair<std::string_view, std::string_view> kMetavars[] = {
-      {"DEG", "deg"}, {"MM", "mm"}, {"S", "s"}, {"HZ", "Hz"}};
-  if (const std::string_view unit = UnitOfKey(arg.key); !unit.empty()) return unit;
-  for (const auto& [metavar, unit] : kMetavars)
-    if (arg.metavar == metavar) return unit;
-  return "";
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ void TellFailure(const Options& options, const std::string& cause, const std::st
 /// What may help against what a file is refused for: the flags that the refusal names.
 std::string NextFor(const ModelError& error) {
   const std::string cause = error.what();
-  if (error.names_no_model()) return "give the path of a .urdf or .toml file";
+  if (error.names_no_model) return "give the path of a .urdf or .toml file";
   std::string flags;
   for (const char* flag : {" --fill-missing-meshes", " --inertia-from-shape"})
     if (cause.find(flag) != std::string::npos) flags += flag;
@@ -84,7 +84,7 @@ int Main(int argc, char** argv) {
     return static_cast<int>(failure.code);
   } catch (const ModelError& error) {
     TellFailure(options, error.what(), NextFor(error), error.problems.Messages());
-    return static_cast<int>(error.names_no_model() ? ExitCode::kNotFound : ExitCode::kFailed);
+    return static_cast<int>(error.names_no_model ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& error) {
     TellFailure(options, ShownText(error.what()), "regrasp help hand " + options.verb);
     return static_cast<int>(ExitCode::kIo);

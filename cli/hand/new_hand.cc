@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "cli/grammar/ranges.h"
 #include "cli/hand/fewer_fingers.h"
 #include "cli/hand/hand_command.h"
 #include "cli/hand/held_ball.h"
@@ -38,10 +39,10 @@ class Maker {
       : options_(options),
         out_(options.Text("--output")),
         object_(options.Text("--object")),
-        size_mm_(options.Number("--object-size", 50, 20, 150)),
-        tilt_(options.Number("--tilt", 65, 0, 180) * M_PI / 180),
+        size_mm_(options.Number("--object-size", 50, kLeastBall_mm, kMostBall_mm)),
+        tilt_(options.Number("--tilt", 65, -kMostTilt_deg, kMostTilt_deg) * M_PI / 180),
         progress_(options.Has("--quiet")) {
-    search_.seed = static_cast<std::uint64_t>(options.Number("--seed", 1, 0, 9e15));
+    search_.seed = static_cast<std::uint64_t>(options.Number("--seed", 1, 0, kMaxSafeInteger));
     gravity_W_ = 9.81 * Vector3d(0, std::cos(tilt_), std::sin(tilt_));
     search_.task.weight = kBallMass * gravity_W_;
     search_.progress = [this](double done, double) {

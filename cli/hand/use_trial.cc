@@ -4,7 +4,6 @@
 #include <functional>
 #include <future>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/hand/trial.h"
@@ -15,12 +14,19 @@ namespace {
 
 constexpr double kLongestExploration = 20, kLongestTurn = 60;  // [s]
 
-/// The job's end; failed where it takes longer.
-JobRecord Run(Session& session, Command command, double longest_s) {
+/// The job's end; failed where it takes longer. `refused`: whether the command's finger may not
+/// leave.
+JobRecord Run(Session& session, Command command, double longest_s, bool* refused = nullptr) {
+  session.TakeEvents();  // of the past
   command.job = 2;
   session.Apply(command);
   const auto end = session.tick() + std::llround(longest_s / session.config().world.dt);
-  while (session.job_running() && session.tick() < end) session.Tick();
+  while (session.job_running() && session.tick() < end) {
+    session.Tick();
+    for (const Event& event : session.TakeEvents())
+      if (refused != nullptr && event.kind == EventKind::kRefused)
+        *refused = event.finger == command.finger;  // the last one is the job's
+  }
   JobRecord ended;
   ended.state = JobState::kFailed;
   for (const JobRecord& job : session.TakeFinishedJobs()) ended = job;
@@ -41,12 +47,12 @@ UseTrial UseOnce(const LoadedScenario& model, Stepper stepper, std::uint64_t see
     explore.type = CommandType::kExplore;
     explore.finger = f;
     explore.seed = seed;
-    const JobRecord job = Run(session, explore, kLongestExploration);
+    bool refused = false;
+    const JobRecord job = Run(session, explore, kLongestExploration, &refused);
     const ExploreResult& result = job.explore;
     if (session.state() == SessionState::kFaulted) return trial;
     if (grasped.held() && result.phi_true_final > result.phi_true_initial) ++trial.rose;
-    if (std::string_view(job.error).find("may not leave") != std::string_view::npos)
-      ++trial.stayed[static_cast<std::size_t>(f)];
+    if (refused && job.state == JobState::kFailed) ++trial.stayed[static_cast<std::size_t>(f)];
     session.Load(state);
   }
   Command rotate;

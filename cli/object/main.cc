@@ -52,19 +52,19 @@ std::vector<std::string> Lines(const std::string& message) {
 Shown Load(const std::string& name, LoadOptions options) {
   Shown shown;
   shown.file = FindModel(name, "objects", ModelSearchPath(""));
-  const auto load = [&](Inertia inertia) {
+  const auto load = [&] {
     ModelReport report;
-    shown.object = LoadObjectFile(shown.file, options, &report, &shown.facts, inertia);
+    shown.object = LoadObjectFile(shown.file, options, &report, &shown.facts);
     for (const ModelWarning& warning : report.warnings) shown.warnings.push_back(warning.Line());
   };
   try {
-    load(Inertia::kOfABody);
+    load();
     return shown;
   } catch (const ModelError& error) {
     shown.refusals = Lines(error.what());
-    options.force = true;
+    options.force = options.inertia_as_told = true;
     try {
-      load(Inertia::kAsTold);
+      load();
     } catch (const ModelError&) {
       throw error;
     }
@@ -92,10 +92,6 @@ const char* KindName(ObjectModel::Kind kind) {
 }
 
 Json ToJson(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-Vector3d Moments(const Matrix3d& inertia) {
-  return Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-}
 
 Json Describe(const Shown& shown) {
   const ObjectModel& o = shown.object;
@@ -128,7 +124,7 @@ Json Describe(const Shown& shown) {
           {"inertia_kg_m2", inertia},
           {"principal_moments_kg_m2", moments},
           {"principal_axes", axes},
-          {"homogeneous_moments_kg_m2", ToJson(Moments(solid.inertia * density))},
+          {"homogeneous_moments_kg_m2", ToJson(PrincipalMoments(solid.inertia * density))},
           {"warnings", shown.warnings},
           {"refusals", shown.refusals}};
 }
@@ -142,30 +138,31 @@ std::string Three(const Json& v, double scale, bool rounded = false) {
   return number(0) + ", " + number(1) + ", " + number(2);
 }
 
-/// What is said of it, a line each: for the terminal and for the picture.
-std::vector<std::string> Text(const Json& json) {
+/// What is said of it: for the terminal and for the picture.
+std::vector<TableRow> Table(const Json& json) {
   const auto number = [&](const char* key) { return json[key].get<double>(); };
-  std::vector<std::string> lines = {
-      fmt::format("shape        {}, closed", json["shape"].get<std::string>()),
-      fmt::format("pieces       {} in {} <collision>, {} triangles", json["pieces"].get<int>(),
-                  json["collisions"].get<int>(), json["triangles"].get<int>()),
-      "size         " + Three(json["size_m"], 1e3) + " mm",
-      fmt::format("reach        {:.4g} mm from the centre of mass",
-                  number("bounding_radius_m") * 1e3),
-      fmt::format("mass         {:.4g} g", number("mass_kg") * 1e3),
-      fmt::format("volume       {:.4g} cm³", number("volume_m3") * 1e6),
-      "density      " + DensityText(number("density_kg_m3")),
-      "centre       " + Three(json["centre_of_mass_m"], 1e3, true) + " mm in the file",
-      "  of volume  " + Three(json["middle_of_volume_m"], 1e3, true) + " mm",
-      "moments      " + (json["principal_moments_kg_m2"].is_null()
-                             ? "none in the file"
-                             : Three(json["principal_moments_kg_m2"], 1e6) + " kg mm²"),
-      "  if uniform " + Three(json["homogeneous_moments_kg_m2"], 1e6) + " kg mm²",
-      fmt::format("friction     {:g}", number("friction"))};
+  std::vector<TableRow> rows = {
+      {"shape", json["shape"].get<std::string>() + ", closed"},
+      {"pieces", fmt::format("{} in {} <collision>, {} triangles", json["pieces"].get<int>(),
+                             json["collisions"].get<int>(), json["triangles"].get<int>())},
+      {"size", Three(json["size_m"], 1e3) + " mm"},
+      {"reach",
+       fmt::format("{:.4g} mm from the centre of mass", number("bounding_radius_m") * 1e3)},
+      {"mass", fmt::format("{:.4g} g", number("mass_kg") * 1e3)},
+      {"volume", fmt::format("{:.4g} cm³", number("volume_m3") * 1e6)},
+      {"density", DensityText(number("density_kg_m3"))},
+      {"centre", Three(json["centre_of_mass_m"], 1e3, true) + " mm in the file"},
+      {"of volume", Three(json["middle_of_volume_m"], 1e3, true) + " mm", true},
+      {"moments", json["principal_moments_kg_m2"].is_null()
+                      ? "none in the file"
+                      : Three(json["principal_moments_kg_m2"], 1e6) + " kg mm²"},
+      {"if uniform", Three(json["homogeneous_moments_kg_m2"], 1e6) + " kg mm²", true},
+      {"friction", fmt::format("{:g}", number("friction"))}};
   if (number("overlap_m3") > 0)
-    lines.insert(lines.begin() + 6,
-                 fmt::format("  overlap    {:.4g} cm³, counted once", number("overlap_m3") * 1e6));
-  return lines;
+    rows.insert(
+        rows.begin() + 6,
+        {"overlap", fmt::format("{:.4g} cm³, counted once", number("overlap_m3") * 1e6), true});
+  return rows;
 }
 
 ExitCode Show(const std::string& name, const Options& given) {
@@ -174,9 +171,9 @@ ExitCode Show(const std::string& name, const Options& given) {
   options.inertia_from_shape = given.contains("--inertia-from-shape");
   const Shown shown = Load(name, options);
   Json json = Describe(shown);
-  const std::vector<std::string> lines = Text(json);
+  const std::vector<TableRow> table = Table(json);
   if (const auto picture = given.find("--output"); picture != given.end()) {
-    PlotObject(shown.object, lines, {}, picture->second);
+    PlotObject(shown.object, table, {}, picture->second);
     json["picture"] = picture->second;
   }
   if (given.contains("--quiet")) return shown.refusals.empty() ? ExitCode::kOk : ExitCode::kFailed;
@@ -184,7 +181,8 @@ ExitCode Show(const std::string& name, const Options& given) {
     fmt::print("{}\n", JsonText(json));
   } else {
     fmt::print("{}\n", shown.file.string());
-    for (const std::string& line : lines) fmt::print("  {}\n", line);
+    for (const TableRow& row : table)
+      fmt::print("  {:<13}{}\n", (row.below ? "  " : "") + row.name, row.value);
     for (const std::string& warning : shown.warnings) fmt::print("  warning: {}\n", warning);
     for (const std::string& refusal : shown.refusals) fmt::print("  refused: {}\n", refusal);
     if (json.contains("picture")) fmt::print("{}\n", json["picture"].get<std::string>());
@@ -221,7 +219,7 @@ int Main(int argc, char** argv) {
       return Fail(given, "regrasp-object show FILE is the only way to run this", ExitCode::kUsage);
     return static_cast<int>(Show(words[1], given));
   } catch (const ModelError& e) {
-    return Fail(given, e.what(), e.names_no_model() ? ExitCode::kNotFound : ExitCode::kFailed);
+    return Fail(given, e.what(), e.names_no_model ? ExitCode::kNotFound : ExitCode::kFailed);
   } catch (const std::exception& e) {
     return Fail(given, ShownText(e.what()), ExitCode::kIo);
   }

@@ -101,7 +101,7 @@ McapSummary ResampleFile(const std::string& path, const ExportOptions& options,
     if (options.whole) place = {segment, window.segment().offset_ns};
     Resample(&window, options.rate_hz, place, counted);
     summary.complete = window.file().complete;
-    AddLosses(window.file().lost, &summary.lost);
+    AddLosses(window.Losses(), &summary.lost);
     return static_cast<int>(window.file().segments.size());
   };
   if (!options.whole) add(RunWindow::kLast);

@@ -70,6 +70,7 @@ ExitCode VideoCommand(const Command& command) {
   }
   if (result.interrupted) return ExitCode::kInterrupted;
   const double made_in_s = SecondsSince(begin);
+  const std::vector<McapLoss> lost = window.Losses();
   Print(command,
         {{"path", out},
          {"frames", result.frames},
@@ -78,12 +79,12 @@ ExitCode VideoCommand(const Command& command) {
          {"codec", result.codec},
          {"complete", window.file().complete},
          {"differences", differences},
-         {"lost", LossesJson(window.file().lost)}},
+         {"lost", LossesJson(lost)}},
         fmt::format("{}: {}, {:.1f} s, {}, made in {:.1f} s ({:.2g} times real time)", out,
                     CountText(result.frames, "frame"), result.duration_s, result.codec, made_in_s,
                     result.duration_s / made_in_s) +
-            EndText(window.file().complete) + LossesText(window.file().lost));
-  return window.file().lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
+            EndText(window.file().complete) + LossesText(lost));
+  return lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 ExitCode PlotCommand(const Command& command) {

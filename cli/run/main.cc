@@ -30,8 +30,9 @@ OnState Pace(const Command& command) {
   };
 }
 
-ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayResult& result,
-                     const Json& differences, Json extra, const std::string& note) {
+ExitCode PrintReplay(const Command& command, const RunFile& file, const std::vector<McapLoss>& lost,
+                     const ReplayResult& result, const Json& differences, const Json& extra,
+                     const std::string& note) {
   const Segment& segment = file.segments[static_cast<std::size_t>(result.segment)];
   const bool same_build = segment.build == BuildIdentity();
   const double seconds =
@@ -48,7 +49,7 @@ ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayRe
                {"build", segment.build},
                {"same_build", same_build},
                {"differences", differences},
-               {"lost", LossesJson(file.lost)},
+               {"lost", LossesJson(lost)},
                {"first_difference", nullptr},
                {"false_saved_state_tick", result.false_state ? Json(*result.false_state) : Json()}};
   json.update(extra);
@@ -63,11 +64,11 @@ ExitCode PrintReplay(const Command& command, const RunFile& file, const ReplayRe
       fmt::format("{}: {}\n  {}, {:.3f} s ({}), {} compared{}", command.file, verdict,
                   CountText(result.commands, "command"), seconds, CountText(result.ticks, "tick"),
                   CountText(result.compared, "state"), note);
-  text += EndText(file.complete) + LossesText(file.lost);
+  text += EndText(file.complete) + LossesText(lost);
   if (!same_build)
     text += fmt::format("\n  recorded by {}\n  replayed by {}", segment.build, BuildIdentity());
   Print(command, json, text);
-  return result.identical() && file.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
+  return result.identical() && lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 ExitCode ReplayStretch(const Command& command) {
@@ -77,7 +78,7 @@ ExitCode ReplayStretch(const Command& command) {
   const ReplayResult result = window.ReplayStretch(Pace(command));
   const double start_s =
       static_cast<double>(window.start_tick()) * window.segment().journal->config.world.dt;
-  return PrintReplay(command, window.file(), result, differences,
+  return PrintReplay(command, window.file(), window.Losses(), result, differences,
                      {{"from", window.from_saved_state() ? "state" : "commands"},
                       {"from_tick", window.start_tick()},
                       {"end_tick", window.replay().session().tick()},
@@ -92,7 +93,7 @@ ExitCode ReplayCommand(const Command& command) {
   const RunFile file = ReadRunFile(command.file);
   const Json differences = TellDifferences(file);
   const ReplayResult result = ReplayRun(file, Pace(command));
-  return PrintReplay(command, file, result, differences, Json::object(), "");
+  return PrintReplay(command, file, file.lost, result, differences, Json::object(), "");
 }
 
 ExitCode ExportCommand(const Command& command) {

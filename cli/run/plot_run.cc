@@ -86,9 +86,8 @@ Pictured Execute(const std::string& path, double dt, std::int64_t from, std::int
   result.input.options.changed = ChangedText(replay.session().parameters(), model);
   if (!window.note().empty()) result.notes.push_back(window.note());
   result.complete = window.file().complete;
-  result.lost = window.file().lost;
-  if (!result.complete)
-    result.notes.push_back(fmt::format("{} has no end: {}", Name(path), kWhyWithoutEnd));
+  result.lost = window.Losses(replay.session().tick());
+  if (!result.complete) result.notes.push_back(WithoutEndText(Name(path)));
   for (const McapLoss& loss : result.lost)
     result.notes.push_back(fmt::format("{} lost {}", Name(path), LossText(loss)));
   return result;

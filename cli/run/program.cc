@@ -98,9 +98,7 @@ Json LossesJson(const std::vector<McapLoss>& lost) {
   return list;
 }
 
-std::string EndText(bool complete) {
-  return complete ? "" : fmt::format("\n  the file has no end: {}", kWhyWithoutEnd);
-}
+std::string EndText(bool complete) { return complete ? "" : "\n  " + WithoutEndText("the file"); }
 
 std::string LossesText(const std::vector<McapLoss>& lost) {
   std::string text;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "cli/client/errors.h"
 #include "core/journal/check.h"
@@ -68,7 +69,6 @@ RunWindow::RunWindow(const std::string& path, Stretch stretch, double lead_s, in
   if (stretch.to_s <= stretch.from_s)
     throw std::runtime_error("nothing happens in this stretch of time");
   stretch_.from_s = std::max(0.0, stretch.from_s - lead_s);
-  FindLosses();
   try {
     if (const auto state = FindState()) {
       replay_ = ReplayFrom(*segment().journal, *state);
@@ -105,16 +105,20 @@ void RunWindow::FindEnd() {
   last_tick_ = std::llround(ticks);
 }
 
-void RunWindow::FindLosses() {
-  if (chunks_.empty()) return;  // no index: all has been read
-  const std::uint64_t begin = FileTime(from_tick()), end = FileTime(end_tick());
+std::vector<McapLoss> RunWindow::Losses(std::int64_t end_tick) const {
+  const std::uint64_t begin = FileTime(from_tick()), end = FileTime(end_tick);
+  std::vector<McapLoss> lost;
+  std::ranges::copy_if(file_.lost, std::back_inserter(lost),
+                       [&](const McapLoss& loss) { return loss.end == 0 || loss.start <= end; });
+  if (chunks_.empty()) return lost;  // no index: all has been read
   const auto here = [&](const McapChunk& chunk) {
     return chunk.end >= begin && chunk.start <= end;
   };
   AddLosses(ReadMcap(
                 path_, [](const McapMessage&) {}, here)
                 .lost,
-            &file_.lost);
+            &lost);
+  return lost;
 }
 
 std::optional<RunSavedState> RunWindow::FindState() const {

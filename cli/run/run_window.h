@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/run/replay_run.h"
 #include "core/journal/run_messages.h"
@@ -37,8 +38,12 @@ class RunWindow {
   /// Executes the stretch and compares every state in it that was recorded.
   ReplayResult ReplayStretch(const OnState& on_state);
 
-  /// Its journals; lost: what could not be read of them, or of the stretch.
+  /// Its journals; lost: what could not be read of all of them.
   const RunFile& file() const { return file_; }
+  /// What could not be read of the stretch, or of the journals before its end: whatever it holds,
+  /// samples too, which nothing here needs. Reads the stretch. With a tick, the stretch ends there.
+  std::vector<McapLoss> Losses() const { return Losses(end_tick()); }
+  std::vector<McapLoss> Losses(std::int64_t end_tick) const;
   const Segment& segment() const { return file_.segments[static_cast<std::size_t>(number_)]; }
   int number() const { return number_; }  ///< of the segment in the file
   Replay& replay() { return *replay_; }
@@ -60,8 +65,6 @@ class RunWindow {
   /// The last saved state of the segment that is not after the stretch's beginning.
   std::optional<RunSavedState> FindState() const;
   void FindEnd();
-  /// Whatever the stretch holds, samples too, which nothing here needs.
-  void FindLosses();
 
   std::string path_;
   Stretch stretch_;

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "cli/print/print.h"
+#include "core/common/count_text.h"
 
 namespace regrasp::cli {
 namespace {
@@ -133,8 +134,7 @@ void DrawHeader(Screen* screen, const Box& box, const DashboardModel& model) {
             {"noise " + Plain(noise.is_object() ? At(noise, "preset") : noise), Ink::kPlain, 1},
             {"seed " + Plain(At(s, "seed")), Ink::kPlain, 2},
             {rec, rec == "rec off" ? Ink::kDim : Ink::kBad, 3},
-            {fmt::format("{} client{}", Plain(At(s, "clients")), At(s, "clients") == 1 ? "" : "s"),
-             Ink::kDim, 4}});
+            {CountText(Plain(At(s, "clients")), "client"), Ink::kDim, 4}});
 }
 
 void DrawObject(Screen* screen, const Box& box, const DashboardModel& model) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -27,10 +29,29 @@ inline std::size_t EditDistance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+/// How far `wanted` is from `name`: letter by letter; a name that is only begun (three letters or
+/// more) is as near as one with two mistakes, and a word that was left away at its end
+/// ("gait.speed" of "gait.speed_rad_s") counts as one. Empty when nothing is near: more than half
+/// of the longer word differs.
+inline std::optional<std::size_t> NameDistance(std::string_view wanted, std::string_view name) {
+  std::optional<std::size_t> least;
+  const auto take = [&](std::string_view part, std::size_t more) {
+    const std::size_t letters = EditDistance(wanted, part);
+    if (2 * letters <= std::max(wanted.size(), part.size()))
+      least = std::min(least.value_or(letters + more), letters + more);
+  };
+  take(name, 0);
+  for (std::size_t end = name.find('_'); end != std::string_view::npos;
+       end = name.find('_', end + 1))
+    take(name.substr(0, end), 1);
+  if (wanted.size() >= 3 && name.starts_with(wanted))
+    least = std::min<std::size_t>(least.value_or(2), 2);
+  return least;
+}
+
 /// The name of `names` (any range of things convertible to std::string_view) nearest to `wanted`;
-/// of equals the one that begins more like it, then the first. Empty when `names` is empty, or when
-/// nothing is near: more than half of the longer word differs. `wanted` over 256 bytes is near to
-/// nothing.
+/// of equals the one that begins more like it, then the first. Empty when none is near. `wanted`
+/// over 256 bytes is near to nothing.
 template <typename Names>
 std::string_view NearestName(std::string_view wanted, const Names& names) {
   if (wanted.size() > 256) return {};
@@ -38,18 +59,25 @@ std::string_view NearestName(std::string_view wanted, const Names& names) {
   std::size_t best_distance = 0, best_same = 0;
   for (const auto& candidate : names) {
     const std::string_view name = candidate;
-    const std::size_t distance = EditDistance(wanted, name);
-    if (2 * distance > std::max(wanted.size(), name.size())) continue;
+    const std::optional<std::size_t> distance = NameDistance(wanted, name);
+    if (!distance) continue;
     const auto differ = std::mismatch(wanted.begin(), wanted.end(), name.begin(), name.end());
     const auto same = static_cast<std::size_t>(differ.first - wanted.begin());
-    if (best.empty() || distance < best_distance ||
-        (distance == best_distance && same > best_same)) {
+    if (best.empty() || *distance < best_distance ||
+        (*distance == best_distance && same > best_same)) {
       best = name;
-      best_distance = distance;
+      best_distance = *distance;
       best_same = same;
     }
   }
   return best;
+}
+
+/// "; did you mean 'x'?", for the end of a sentence, or "" when nothing is near.
+template <typename Names>
+std::string OrNearest(std::string_view wanted, const Names& names) {
+  const std::string_view near = NearestName(wanted, names);
+  return near.empty() ? "" : "; did you mean '" + std::string(near) + "'?";
 }
 
 }  // namespace regrasp

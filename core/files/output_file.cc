@@ -38,21 +38,13 @@ void CheckWritable(const std::string& target, Draft::Existing existing) {
   struct stat info {};
   if (existing == Draft::Existing::kKeep && ::lstat(target.c_str(), &info) == 0)
     throw WriteError(target + " exists; give another name");
-  const auto fail = [&](const std::string& cause) {
-    throw WriteError("cannot write " + target + ": " + cause);
-  };
-  std::error_code error;
-  fs::path directory = fs::absolute(target, error).parent_path();
-  if (error) fail("the current directory has gone");
-  directory = ThereOf(directory);
-  if (!fs::is_directory(directory, error)) fail(directory.string() + " is no directory");
-  if (::access(directory.c_str(), W_OK | X_OK) != 0)
-    fail(directory.string() + ": " + std::strerror(errno));
+  const std::string cause = WhyNoOutput(fs::path(target).parent_path());
+  if (!cause.empty()) throw WriteError("cannot write " + target + ": " + cause);
 }
 
 std::string WhyNoOutput(const std::string& directory) {
   std::error_code error;
-  const fs::path there = ThereOf(fs::absolute(directory, error));
+  const fs::path there = ThereOf(fs::absolute(directory.empty() ? "." : directory, error));
   if (error) return "the current directory has gone";
   if (!fs::is_directory(there, error)) return there.string() + " is no directory";
   std::string probe = (there / ".regrasp-XXXXXX").string();
@@ -61,7 +53,7 @@ std::string WhyNoOutput(const std::string& directory) {
     return "";
   }
   if (errno == ENOSPC || errno == EDQUOT) return "";
-  return "nothing can be made in " + there.string() + ": " + std::strerror(errno);
+  return there.string() + ": " + std::strerror(errno);
 }
 
 void WriteOutput(const std::string& target, Draft::Existing existing,

@@ -17,12 +17,12 @@ class WriteError : public std::runtime_error {
 };
 
 /// Before long work: throws WriteError where `target` has no name, where nothing can be made in its
-/// directory (or in the one above that is there), and with kKeep where it exists.
+/// directory (WhyNoOutput), and with kKeep where it exists.
 void CheckWritable(const std::string& target, Draft::Existing existing);
 
-/// Why nothing can be made in `directory`, or above it where it is not there yet: "" where it can.
-/// Tried, not asked: where a user may write, a file system may refuse all the same. That a disk is
-/// full is no reason: it may pass.
+/// Why nothing can be made in `directory` (empty: the current one), or above it where it is not
+/// there yet: "" where it can. Tried, not asked: where a user may write, a file system may refuse
+/// all the same. That a disk is full is no reason: it may pass.
 std::string WhyNoOutput(const std::string& directory);
 
 /// Has `write` make a draft beside `target`, with its suffix, and renames it: a reader sees the old

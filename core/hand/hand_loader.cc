@@ -40,6 +40,7 @@ class HandReader {
     problems_.ThrowIfAny();
     CheckLengths();
     fingertips_.emplace(tree_, layout_);
+    palm_ = tree_.Palm();
     StartLink(file_.root, -1, layout_.X_HR);
     for (const auto& finger : layout_.fingers) ReadFinger(finger);
     ReadRest(file_.root);
@@ -76,9 +77,7 @@ class HandReader {
     AddBody(LinkAt(in), X_LG, &hand_.links[static_cast<std::size_t>(link)]);
     if (LinkAt(in).inertial && !WhatLacks(*LinkAt(in).inertial).empty())
       lacking_.emplace(link, &LinkAt(in));
-    for (const Shape& shape :
-         shapes_.Read(LinkAt(in), X_LG, fingertips_->MayBe(in),
-                      hand_.links[static_cast<std::size_t>(link)].parent_joint < 0)) {
+    for (const Shape& shape : shapes_.Read(LinkAt(in), X_LG, RoleOf(in))) {
       hand_.links[static_cast<std::size_t>(link)].shapes.push_back(shape);
       shape_origin_[static_cast<std::size_t>(link)].push_back(in);
     }
@@ -86,6 +85,11 @@ class HandReader {
     for (const int j : LinkAt(in).child_joints)
       if (const auto angle = tree_.LockedAt(j))
         Merge(JointAt(j).child, X_LG * tree_.PoseAt(j, *angle), link);
+  }
+
+  LinkRole RoleOf(int in) const {
+    if (fingertips_->MayBe(in)) return LinkRole::kFingertip;
+    return tree_.IsBelow(in, palm_) ? LinkRole::kOther : LinkRole::kStand;
   }
 
   void AddBody(const UrdfLink& in, const Isometry3d& X_LG, Link* link) {
@@ -176,6 +180,7 @@ class HandReader {
   const HandLayout& layout_;
   const LoadOptions& options_;
   HandShapes shapes_;
+  int palm_ = 0;
   JointValues values_;
   std::optional<Fingertips> fingertips_;
   HandModel hand_;

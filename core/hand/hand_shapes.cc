@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLargestLink = 1;    // [m]; what is larger, or farther off, has another unit
-constexpr double kLargestStand = 10;  // ... of what the palm stands on: an arm, a table, a floor
+constexpr double kLargestStand = 10;  // ... of what the hand stands on
 
 /// The longest side of a shape that is no mesh.
 double Size(const UrdfGeometry& geometry) {
@@ -62,14 +62,15 @@ bool IsFile(const fs::path& path) {
 
 }  // namespace
 
-std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip,
-                                    bool stands) {
+std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, LinkRole role) {
   std::vector<Shape> shapes;
+  const bool fingertip = role == LinkRole::kFingertip;
   const UrdfCollision* tip_box = fingertip ? FarthestIfBoxes(in) : nullptr;
   for (const UrdfCollision& collision : in.collisions) {
     const Isometry3d X = X_LG * collision.X_LG;
     const UrdfGeometry& geometry = collision.geometry;
-    if (!CheckSize(in, collision, stands ? kLargestStand : kLargestLink)) continue;
+    if (!CheckSize(in, collision, role == LinkRole::kStand ? kLargestStand : kLargestLink))
+      continue;
     Shape shape;
     switch (geometry.kind) {
       case UrdfGeometry::Kind::kSphere:

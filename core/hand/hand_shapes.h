@@ -3,6 +3,7 @@
 /// The collision shapes of one hand link from the <collision> elements of a URDF link. Used only by
 /// the hand's loader.
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,17 +17,23 @@
 
 namespace regrasp {
 
+/// What a URDF link is of a hand.
+enum class LinkRole : std::uint8_t {
+  kFingertip,  ///< may be one
+  kOther,      ///< of the hand: the palm, a link of a finger
+  kStand,      ///< what the hand stands on, an arm, a table, a floor: may be larger than a hand
+};
+
 class HandShapes {
  public:
   HandShapes(const UrdfFile& file, const LoadOptions& options, Problems* problems,
              ModelReport* report)
       : file_(file), options_(options), problems_(problems), report_(report) {}
 
-  /// The shapes of `in`, posed in the frame of the link it is fixed to. `fingertip`: a mesh, a
+  /// The shapes of `in`, posed in the frame of the link it is fixed to. A fingertip's mesh or
   /// disc, or where there are boxes only the farthest of them, is fitted by the capsule or sphere
   /// that its far end needs; else a mesh or a disc is fitted by what comes nearest to all of it.
-  /// `stands`: what the palm stands on is part of it, and may be larger than a hand.
-  std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, bool fingertip, bool stands);
+  std::vector<Shape> Read(const UrdfLink& in, const Isometry3d& X_LG, LinkRole role);
 
  private:
   /// Whether a shape is no larger, and no farther from its link, than `most` [m]; else a problem.

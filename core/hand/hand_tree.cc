@@ -117,6 +117,25 @@ Isometry3d HandTree::PoseAt(int j, double angle) const {
   return X;
 }
 
+bool HandTree::IsBelow(int l, int above) const {
+  while (l != above && link(l).parent_joint >= 0) l = joint(link(l).parent_joint).parent;
+  return l == above;
+}
+
+int HandTree::Palm() const {
+  int palm = -1;
+  for (const HandLayout::Finger& finger : layout_.fingers) {
+    const int tip = file_.FindLink(finger.tip_link);
+    const std::vector<int> joints = tip < 0 ? std::vector<int>() : JointsTo(tip);
+    if (joints.empty()) continue;
+    int base = joint(joints.front()).parent;
+    if (palm < 0) palm = base;
+    while (!IsBelow(palm, base)) base = joint(link(base).parent_joint).parent;
+    palm = base;
+  }
+  return palm < 0 ? file_.root : palm;
+}
+
 void HandTree::AddBodyOf(int link_index, std::set<int>* group) const {
   int up = link(link_index).parent_joint;
   while (up >= 0 && LockedAt(up)) {

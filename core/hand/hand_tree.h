@@ -50,6 +50,11 @@ class HandTree {
   /// The joints that move a link, from the root on.
   std::vector<int> JointsTo(int link) const;
 
+  /// The link that carries the first joint of every finger: of the names that the layout has.
+  int Palm() const;
+  /// Whether `link` is `above`, or comes after it from the root on.
+  bool IsBelow(int link, int above) const;
+
   /// Adds every link of the body that carries `link`.
   void AddBodyOf(int link, std::set<int>* group) const;
 

@@ -67,8 +67,7 @@ std::string WhyUnlikely(const Link& link) {
   const Vector3d farthest =
       (box.max() - link.p_LCom).cwiseMax(link.p_LCom - box.min()).cwiseMax(Vector3d::Zero());
   const double R = farthest.norm(), most = link.mass * R * R;
-  const double moment =
-      Eigen::SelfAdjointEigenSolver<Matrix3d>(link.I_LCom, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  const double moment = PrincipalMoments(link.I_LCom)[2];
   if (moment <= most) return "";
   return fmt::format(
       "<inertia> has the moment {:.4g} kg m²; a body of its size has at most m R² = {:.4g}, "

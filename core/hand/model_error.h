@@ -15,9 +15,14 @@ class ModelError : public std::runtime_error {
   explicit ModelError(const std::string& message) : ModelError(ProblemList(message)) {}
   explicit ModelError(ProblemList list)
       : std::runtime_error(list.Text()), problems(std::move(list)) {}
+  /// All that is wrong is that a model's own file, or its directory, is not there.
+  static ModelError NoModel(const std::string& message) {
+    ModelError error(message);
+    error.names_no_model = true;
+    return error;
+  }
   ProblemList problems;
-  /// Whether all that is wrong is that a model's own file, or its directory, is not there.
-  bool names_no_model() const;
+  bool names_no_model = false;
 };
 
 }  // namespace regrasp

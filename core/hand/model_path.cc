@@ -9,6 +9,8 @@
 #include <set>
 #include <system_error>
 
+#include "core/common/nearest_name.h"
+
 namespace regrasp {
 namespace {
 
@@ -55,7 +57,7 @@ std::vector<fs::path> ModelSearchPath(const std::string& models_dir) {
   };
   if (!models_dir.empty()) {
     if (!IsDirectory(models_dir))
-      throw ModelError(fmt::format("{}: models directory not found", models_dir));
+      throw ModelError::NoModel(fmt::format("{}: models directory not found", models_dir));
     add(models_dir);
   }
   if (const char* named = std::getenv("REGRASP_MODELS_DIR"); named != nullptr && *named != '\0') {
@@ -77,7 +79,7 @@ fs::path FindModel(const std::string& name, const char* kind,
                    const std::vector<fs::path>& search_path) {
   if (Suffix(name) == ".urdf") {
     if (IsFile(name)) return name;
-    throw ModelError(fmt::format("{}: file not found", name));
+    throw ModelError::NoModel(fmt::format("{}: file not found", name));
   }
   const bool names_file = name.find('/') != std::string::npos && fs::path(name).has_extension();
   if (names_file || IsFile(name))
@@ -90,15 +92,16 @@ fs::path FindModel(const std::string& name, const char* kind,
       if (IsFile(file)) return file;
     }
   if (search_path.empty())
-    throw ModelError(
+    throw ModelError::NoModel(
         fmt::format("there is no model \"{}\": no directory of models was found "
                     "($REGRASP_MODELS_DIR names one)",
                     name));
   std::vector<std::string> directories;
   for (const fs::path& directory : search_path) directories.push_back((directory / kind).string());
-  throw ModelError(fmt::format("there is no model \"{}\" in {}; available are {}", name,
-                               fmt::join(directories, ", "),
-                               fmt::join(ListModels(search_path, kind), ", ")));
+  const std::vector<std::string> known = ListModels(search_path, kind);
+  throw ModelError::NoModel(fmt::format("there is no model \"{}\" in {}{}; available are {}", name,
+                                        fmt::join(directories, ", "), OrNearest(name, known),
+                                        fmt::join(known, ", ")));
 }
 
 std::vector<std::string> ListModels(const std::vector<fs::path>& search_path, const char* kind) {

@@ -12,6 +12,8 @@ namespace regrasp {
 struct LoadOptions {
   bool force = false;  ///< take bodies that cannot exist (moment, centre of mass, density)
   bool inertia_from_shape = false;   ///< mass kept; centre and inertia of a homogeneous body
+  bool inertia_as_told = false;      ///< an object's, to show a file that is refused: one of no
+                                     ///< body is taken, one that is missing is 0
   bool fill_missing_meshes = false;  ///< a hand's mesh file that is not there: a capsule along the
                                      ///< link
 };

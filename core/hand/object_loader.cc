@@ -20,13 +20,12 @@ namespace {
 class ObjectReader {
  public:
   ObjectReader(const std::filesystem::path& path, const LoadOptions& options, ModelReport* report,
-               ObjectFacts* facts, const Matrix3d& R_OL, Inertia inertia)
+               ObjectFacts* facts, const Matrix3d& R_OL)
       : problems_(path.string(), report),
         file_(ReadUrdf(path, &problems_)),
         options_(options),
         facts_out_(facts),
-        R_OL_(R_OL),
-        as_told_(inertia == Inertia::kAsTold) {}
+        R_OL_(R_OL) {}
 
   ObjectModel Read() {
     problems_.ThrowIfAny();
@@ -147,12 +146,12 @@ class ObjectReader {
     if (from_shape_) {
       const Solid solid = ObjectSolid(object_);
       object_.I_OCom = solid.inertia * (object_.mass / solid.volume);
-    } else if (!inertial_.has_inertia && !as_told_) {
+    } else if (!inertial_.has_inertia && !options_.inertia_as_told) {
       return computes("<inertial> has no <inertia>");
     }
     facts_.inertia_told = from_shape_ || inertial_.has_inertia;
     if (!summed_) return;
-    if (as_told_) return;
+    if (options_.inertia_as_told) return;
     if (const std::string why = WhyNoInertia(object_.I_OCom); !why.empty()) return computes(why);
     if (!whole) return;
     if (const std::string why = WhyUnlikely(object_); !why.empty())
@@ -175,7 +174,6 @@ class ObjectReader {
   ObjectFacts* facts_out_;
   ObjectFacts facts_;
   Matrix3d R_OL_;
-  bool as_told_;             // whatever the inertia
   bool summed_ = false;      // its links, without a problem
   bool from_shape_ = false;  // centre and inertia
   std::string element_;
@@ -187,13 +185,12 @@ class ObjectReader {
 }  // namespace
 
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options,
-                           ModelReport* report, ObjectFacts* facts, const Matrix3d& R_OL,
-                           Inertia inertia) {
-  return ObjectReader(urdf_file, options, report, facts, R_OL, inertia).Read();
+                           ModelReport* report, ObjectFacts* facts, const Matrix3d& R_OL) {
+  return ObjectReader(urdf_file, options, report, facts, R_OL).Read();
 }
 
 ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options,
-                           ModelReport* report, ObjectFacts* facts, Inertia inertia) {
+                           ModelReport* report, ObjectFacts* facts) {
   std::filesystem::path toml_file = urdf_file;
   toml_file.replace_extension(".toml");
   std::error_code ignored;
@@ -216,7 +213,7 @@ ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions o
   }
   ObjectModel model;
   try {
-    model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL, inertia);
+    model = LoadObjectUrdf(urdf_file, options, report, facts, R_OL);
   } catch (const ModelError& error) {
     if (!file) throw;
     file->Add(error);

@@ -2,7 +2,6 @@
 
 /// Objects from URDF files.
 
-#include <cstdint>
 #include <filesystem>
 
 #include "core/hand/model_error.h"
@@ -11,12 +10,9 @@
 
 namespace regrasp {
 
-/// A file that is refused is shown all the same, with what it says.
-enum class Inertia : std::uint8_t { kOfABody, kAsTold };
-
 /// What the file says that is not simulated; for `regrasp object show`.
 struct ObjectFacts {
-  bool inertia_told = true;            ///< kAsTold: else the object's is 0
+  bool inertia_told = true;            ///< inertia_as_told: else the object's is 0
   Vector3d p_LCom = Vector3d::Zero();  ///< centre of mass in the link's frame [m]
   int collisions = 0;                  ///< <collision> elements
   int pieces = 0;                      ///< closed surfaces that share no corner
@@ -29,18 +25,16 @@ struct ObjectFacts {
 /// anything else becomes one mesh (round pieces by facets, primitive_mesh.h), and where pieces
 /// overlap the body is their union. The origin is moved to the centre of mass, and the link
 /// turned by `R_OL` first. A body that cannot
-/// be is refused with the flag that mends it; with kAsTold an inertia of no body is taken. Adds to
+/// be is refused with the flag that mends it; Adds to
 /// `report` and `facts` where given. Throws ModelError with all that is wrong, each with its line.
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options = {},
                            ModelReport* report = nullptr, ObjectFacts* facts = nullptr,
-                           const Matrix3d& R_OL = Matrix3d::Identity(),
-                           Inertia inertia = Inertia::kOfABody);
+                           const Matrix3d& R_OL = Matrix3d::Identity());
 
 /// The same with what the .toml file of the same name beside it says: friction,
 /// rotation_deg (a rotation vector: how the link is turned to be presented to the hand),
 /// inertia_from_shape, force. The object is called as the file.
 ObjectModel LoadObjectFile(const std::filesystem::path& urdf_file, LoadOptions options = {},
-                           ModelReport* report = nullptr, ObjectFacts* facts = nullptr,
-                           Inertia inertia = Inertia::kOfABody);
+                           ModelReport* report = nullptr, ObjectFacts* facts = nullptr);
 
 }  // namespace regrasp

@@ -5,14 +5,6 @@
 
 namespace regrasp {
 
-bool ModelError::names_no_model() const {
-  const std::string_view text = what();
-  return problems.count() == 1 &&
-         (text.starts_with("there is no model") || text.ends_with(": file not found") ||
-          text.ends_with("directory not found") ||
-          text.find(": scenario not found;") != std::string_view::npos);
-}
-
 void Problems::AddText(int line, const std::string& message) {
   list_.Add(line, line > 0 ? fmt::format("{}:{}: {}", file_, line, message)
                            : fmt::format("{}: {}", file_, message));

@@ -175,7 +175,8 @@ fs::path UrdfOf(const TomlFile& file, const fs::path& toml_file) {
   file.ThrowIfAny();
   const fs::path urdf = toml_file.parent_path() / named;  // an absolute one stays as it is
   if (!IsFile(urdf))
-    throw ModelError(fmt::format("{}: urdf = \"{}\": file not found", toml_file.string(), named));
+    throw ModelError::NoModel(
+        fmt::format("{}: urdf = \"{}\": file not found", toml_file.string(), named));
   return urdf;
 }
 
@@ -184,7 +185,7 @@ fs::path UrdfOf(const TomlFile& file, const fs::path& toml_file) {
 HandFiles FindHandFiles(const std::string& hand, const std::vector<fs::path>& search_path) {
   fs::path toml_file = hand;
   if (toml_file.extension() == ".toml") {
-    if (!IsFile(toml_file)) throw ModelError(fmt::format("{}: file not found", hand));
+    if (!IsFile(toml_file)) throw ModelError::NoModel(fmt::format("{}: file not found", hand));
     const fs::path urdf = UrdfOf(TomlFile(toml_file), toml_file);
     if (!IsFile(urdf))
       throw ModelError(fmt::format("{}: there is no {} beside it; urdf = \"FILE.urdf\" names one",
@@ -217,7 +218,7 @@ LoadedScenario LoadScenario(const std::string& hand, const std::string& object,
   }
   const auto& [urdf_file, toml_file] = files;
   if (toml_file.empty())
-    throw ModelError(fmt::format(
+    throw ModelError::NoModel(fmt::format(
         "{}: scenario not found; a hand needs one beside its URDF: regrasp hand new {} -o {}",
         Beside(urdf_file).string(), urdf_file.string(), Beside(urdf_file).string()));
   const TomlFile file(toml_file);

@@ -230,9 +230,12 @@ Solid LinkSolid(const std::vector<Shape>& shapes) {
   return sum;
 }
 
+Vector3d PrincipalMoments(const Matrix3d& inertia) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 std::string WhyNoInertia(const Matrix3d& inertia) {
-  const Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vector3d moments = PrincipalMoments(inertia);
   if (!(moments[0] > 0))
     return fmt::format("<inertia> has the principal moment {:.4g}; all three must be > 0",
                        moments[0]);
@@ -250,13 +253,10 @@ std::string DensityText(double density) {
 }
 
 std::string WhyUnlikely(const ObjectModel& object) {
-  const auto moments = [](const Matrix3d& I) -> Vector3d {
-    return Eigen::SelfAdjointEigenSolver<Matrix3d>(I, Eigen::EigenvaluesOnly).eigenvalues();
-  };
   constexpr double kShare = 0.1;
   const Solid solid = ObjectSolid(object);
-  const Vector3d told = moments(object.I_OCom),
-                 uniform = moments(solid.inertia) * (object.mass / solid.volume);
+  const Vector3d told = PrincipalMoments(object.I_OCom),
+                 uniform = PrincipalMoments(solid.inertia) * (object.mass / solid.volume);
   if ((told.array() >= kShare * uniform.array()).all()) return "";
   return fmt::format(
       "<inertia> has the principal moments {:.4g}, {:.4g}, {:.4g} kg m²; a homogeneous body of "
@@ -265,9 +265,6 @@ std::string WhyUnlikely(const ObjectModel& object) {
 }
 
 std::vector<Impossible> WhyNoBody(const ObjectModel& object) {
-  const auto largest = [](const Matrix3d& I) {
-    return Eigen::SelfAdjointEigenSolver<Matrix3d>(I, Eigen::EigenvaluesOnly).eigenvalues()[2];
-  };
   std::vector<Impossible> reasons;
   const Solid solid = ObjectSolid(object);
   const double density = object.mass / solid.volume;
@@ -283,13 +280,13 @@ std::vector<Impossible> WhyNoBody(const ObjectModel& object) {
         {fmt::format("the centre of mass lies outside of the shape, {:.4g} mm from the "
                      "middle of its volume",
                      solid.centre.norm() * 1e3)});
-  const double moment = largest(object.I_OCom);
+  const double moment = PrincipalMoments(object.I_OCom)[2];
   const double most = object.mass * object.bounding_radius * object.bounding_radius;
   if (moment > most * (1 + 1e-3))
     reasons.push_back({fmt::format(
         "<inertia> has the moment {:.4g} kg m²; possible is at most m R² = {:.4g}, R = {:.4g} m (a "
         "homogeneous body of this shape has {:.4g})",
-        moment, most, object.bounding_radius, density * largest(solid.inertia))});
+        moment, most, object.bounding_radius, density * PrincipalMoments(solid.inertia)[2])});
   return reasons;
 }
 

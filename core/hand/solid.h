@@ -39,6 +39,9 @@ Solid LinkSolid(const std::vector<Shape>& shapes);
 /// The inertia of a point mass at `p`, about the origin.
 Matrix3d PointInertia(double mass, const Vector3d& p);
 
+/// The least first.
+Vector3d PrincipalMoments(const Matrix3d& inertia);
+
 /// Why no body can have this inertia, or "": three principal moments > 0, none above the sum of the
 /// others (within 0.1 %: a rounded number may miss equality by its last digit).
 std::string WhyNoInertia(const Matrix3d& inertia);

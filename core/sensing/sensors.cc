@@ -125,7 +125,7 @@ void Sensors::ReadFingertips(const WorldState& truth) {
     const Isometry3d& X_WL = kinematics_.X_WL[hand_->fingers[f].tip_link];
     if (!out.in_contact) {
       out = FingertipReading{};
-      errors_[f].Apply(levels_, X_WL, sample_s(), &out);
+      errors_[f].Apply(levels_, X_WL, SampleTime(dt_), &out);
       continue;
     }
     out.p_WC += position_noise;
@@ -138,7 +138,7 @@ void Sensors::ReadFingertips(const WorldState& truth) {
       out.normal_W = -(X_WL.linear() * nearest.outward_L).normalized();
     }
     out.normal_W = Tilted(out.normal_W, tilt_a, tilt_b);
-    errors_[f].Apply(levels_, X_WL, sample_s(), &out);
+    errors_[f].Apply(levels_, X_WL, SampleTime(dt_), &out);
   }
 }
 
@@ -147,7 +147,7 @@ void Sensors::ReadObject(std::int64_t tick, const WorldState& truth) {
   const Vector3d rotation = levels_.object_rotation_rad * pose_rotation_stream_.Normal3();
   if (levels_.object_drift_m > 0)
     object_drift_ +=
-        levels_.object_drift_m * std::sqrt(sample_s()) * object_drift_stream_.Normal3();
+        levels_.object_drift_m * std::sqrt(SampleTime(dt_)) * object_drift_stream_.Normal3();
   if (levels_.object_rate_hz > 0) {
     const std::int64_t frame = PeriodIndex(tick, dt_, levels_.object_rate_hz);
     if (frame == last_pose_frame_) return;

@@ -25,6 +25,8 @@
 namespace regrasp {
 
 inline constexpr double kSensorRateHz = 1000;
+/// Time from one sample to the next, of a physics step of `dt` [s].
+constexpr double SampleTime(double dt) { return std::max(dt, 1 / kSensorRateHz); }
 /// Largest NoiseLevels::object_delay_frames; more is treated as this.
 inline constexpr int kMaxPoseDelay = 7;
 
@@ -93,7 +95,6 @@ class Sensors {
     }
   };
   /// From one sample to the next [s].
-  double sample_s() const { return std::max(dt_, 1 / kSensorRateHz); }
   void ReadFingertips(const WorldState& truth);
   void ReadObject(std::int64_t tick, const WorldState& truth);
 

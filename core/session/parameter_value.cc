@@ -51,6 +51,7 @@ bool IsQuotedNumber(const GivenValue& given) {
 [[noreturn]] void Refuse(const ParameterInfo& info, const GivenValue& given) {
   const std::string name(info.name);
   std::string message = name + " = " + Shown(given) + ": expected " + AllowedText(info);
+  const std::string whole = message;
   const bool scalar = info.type == ParameterType::kReal || info.type == ParameterType::kInteger;
   if (scalar && IsQuotedNumber(given))
     message = name + " is a number, and " + Shown(given) + " is text: leave out the quotes";
@@ -60,7 +61,8 @@ bool IsQuotedNumber(const GivenValue& given) {
               ", not " + Shown(given);
   if (info.type == ParameterType::kVector && !std::holds_alternative<double>(given))
     message = name + " is 3 numbers, not " + Shown(given);
-  throw ParameterError(message, AllowedText(info));
+  const bool said = message == whole;
+  throw ParameterError(message, said ? "" : AllowedText(info));
 }
 
 void CheckRange(const ParameterInfo& info, double value) {
@@ -83,8 +85,8 @@ double ReadWord(const ParameterInfo& info, const GivenValue& given) {
     const auto found = std::ranges::find(info.words, *word);
     if (found != info.words.end()) return static_cast<double>(found - info.words.begin());
     throw ParameterError(
-        std::string(info.name) + " = " + Shown(given) + ": expected " + AllowedText(info),
-        AllowedText(info), NearestName(*word, info.words));
+        std::string(info.name) + " = " + Shown(given) + ": expected " + AllowedText(info), "",
+        NearestName(*word, info.words));
   }
   const double* number = std::get_if<double>(&given);
   if (number && *number == std::floor(*number) && *number >= info.min && *number <= info.max)

@@ -16,8 +16,8 @@ namespace regrasp {
 /// What somebody gives for a parameter: true or false, a number, a word, or several numbers.
 using GivenValue = std::variant<bool, double, std::string, std::vector<double>>;
 
-/// what() names parameter and value; `allowed` what it may be; `nearest` the word that was probably
-/// meant, or "".
+/// what() names parameter and value; `allowed` what it may be, where what() does not; `nearest` the
+/// word that was probably meant, or "".
 class ParameterError : public std::invalid_argument {
  public:
   ParameterError(const std::string& message, std::string what_is_allowed,
@@ -26,6 +26,11 @@ class ParameterError : public std::invalid_argument {
         allowed(std::move(what_is_allowed)),
         nearest(nearest_word) {}
   std::string allowed, nearest;
+  /// "did you mean 'x'?", "allowed: …", or "" where what() has said it.
+  std::string Hint() const {
+    if (!nearest.empty()) return "did you mean '" + nearest + "'?";
+    return allowed.empty() ? "" : "allowed: " + allowed;
+  }
 };
 
 /// The value as the table's set() takes it. For a boolean 0 and 1 stand too, for a word its number:

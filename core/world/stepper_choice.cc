@@ -31,7 +31,7 @@ Trial Close(const LoadedScenario& model, WorldConfig config, Stepper stepper) {
     ForwardKinematics(model.hand, q, &kinematics);
     world.SetTorque(GravityTorque(model.hand, kinematics, scenario.gravity_W) +
                     kStiffness * (scenario.q_closed - q));
-    if (world.Step() != StepStatus::kOk) return {world.state().q, world.fault_message()};
+    if (world.Step() != StepStatus::kOk) return {world.state().q, world.fault_cause()};
   }
   return {world.state().q, ""};
 }
@@ -43,12 +43,9 @@ std::string Fall(const LoadedScenario& model, WorldConfig config) {
   World world(model.hand, model.object, config, model.scenario.q_preshape, model.scenario.X_WO);
   world.SetGravity(model.scenario.gravity_W);
   for (int k = 0; k * config.dt < kFall; ++k)
-    if (world.Step() != StepStatus::kOk) return world.fault_message();
+    if (world.Step() != StepStatus::kOk) return world.fault_cause();
   return "";
 }
-
-/// A fault without its advice, which is the other step.
-std::string Cause(const std::string& fault) { return fault.substr(0, fault.find("; try ")); }
 
 }  // namespace
 
@@ -58,18 +55,16 @@ StepperChoice ChooseStepper(const LoadedScenario& model, const WorldConfig& conf
   const Trial fast = Close(model, config, Stepper::kFast);
   if (!exact.fault.empty() && !fast.fault.empty())
     return {Stepper::kFast,
-            "neither step can close the hand: the exact one: " + Cause(exact.fault) +
-                "; the fast one: " + Cause(fast.fault),
+            "neither step can close the hand: the exact one: " + exact.fault +
+                "; the fast one: " + fast.fault,
             false};
   if (!fast.fault.empty())
-    return {Stepper::kExact,
-            "failed at load: the fast step, closing the hand: " + Cause(fast.fault)};
+    return {Stepper::kExact, "failed at load: the fast step, closing the hand: " + fast.fault};
   if (!exact.fault.empty())
-    return {Stepper::kFast,
-            "failed at load: the exact step, closing the hand: " + Cause(exact.fault)};
+    return {Stepper::kFast, "failed at load: the exact step, closing the hand: " + exact.fault};
   const std::string fall = Fall(model, config);
   if (!fall.empty())
-    return {Stepper::kExact, "failed at load: the fast step, 1 s of free motion: " + Cause(fall)};
+    return {Stepper::kExact, "failed at load: the fast step, 1 s of free motion: " + fall};
   const double moved = (exact.q - model.scenario.q_preshape).cwiseAbs().maxCoeff();
   const double apart = (exact.q - fast.q).cwiseAbs().maxCoeff();
   const bool agree = apart <= kAgreement * std::max(moved, kMotion);

@@ -25,7 +25,9 @@ constexpr double kLeastMass = 1e-9;  // [kg]
 // Found by our own checks, outside ODE: the ODE world is still in order and can be destroyed.
 class WorldFault : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit WorldFault(const std::string& cause, const char* what_helps = "")
+      : std::runtime_error(cause), advice(what_helps) {}
+  const char* advice;  ///< what may help, or ""
 };
 
 double Now() {
@@ -76,7 +78,7 @@ struct World::Impl {
   StageTimes times;
   bool measure = false;
   bool faulted = false;
-  char message[256] = "";
+  char message[256] = "", cause[256] = "";
 };
 
 World::Impl::Impl(const HandModel& hand_in, const ObjectModel& object_in,
@@ -145,11 +147,10 @@ void World::Impl::CheckState() const {
   for (int i = 0; i < hand.num_joints(); ++i) good = good && sane(state.qdot[i]);
   for (int k = 0; k < 3; ++k) good = good && sane(state.v_WO[k]) && sane(state.w_WO[k]);
   if (!good)
-    throw WorldFault(config.stepper != Stepper::kExact
-                         ? "the simulation has diverged; try --stepper exact, or a larger "
-                           "armature_kg_m2 in the hand's scenario"
-                         : "the simulation has diverged; try --stepper fast, or a larger "
-                           "armature_kg_m2 in the hand's scenario");
+    throw WorldFault("the simulation has diverged",
+                     config.stepper != Stepper::kExact
+                         ? "try --stepper exact, or a larger armature_kg_m2 in the hand's scenario"
+                         : "try --stepper fast, or a larger armature_kg_m2 in the hand's scenario");
 }
 
 void World::Impl::UpdateTorques() {
@@ -255,9 +256,12 @@ StepStatus World::Step() {
     w.times = {t1 - t0, t2 - t1};
     return StepStatus::kOk;
   } catch (const WorldFault& e) {
-    std::snprintf(w.message, sizeof(w.message), "%s", e.what());
+    std::snprintf(w.cause, sizeof(w.cause), "%s", e.what());
+    std::snprintf(w.message, sizeof(w.message), "%s%s%s", e.what(), *e.advice != 0 ? "; " : "",
+                  e.advice);
   } catch (const std::exception& e) {
     w.ode.Abandon();
+    std::snprintf(w.cause, sizeof(w.cause), "%s", e.what());
     std::snprintf(w.message, sizeof(w.message), "%s", e.what());
   }
   w.faulted = true;
@@ -265,6 +269,7 @@ StepStatus World::Step() {
 }
 
 const char* World::fault_message() const { return impl_->message; }
+const char* World::fault_cause() const { return impl_->cause; }
 const WorldState& World::state() const {
   return impl_->transmissions.any() ? impl_->shown : impl_->state;
 }

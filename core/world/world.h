@@ -164,9 +164,10 @@ class World {
 
   /// Advances by dt. Never throws and never ends the process: a fault inside ODE makes this and
   /// every later call return kFault, and only destroying the world helps. `fault_message()` tells
-  /// the reason.
+  /// the reason and what may help, `fault_cause()` the reason alone.
   StepStatus Step();
   const char* fault_message() const;
+  const char* fault_cause() const;
 
   /// The truth after the last step (or the initial state).
   const WorldState& state() const;

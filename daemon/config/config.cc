@@ -19,11 +19,6 @@
 namespace regrasp {
 namespace {
 
-std::string DidYouMean(std::string_view wanted, const std::vector<std::string_view>& names) {
-  const std::string_view near = NearestName(wanted, names);
-  return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
-}
-
 /// A value as TOML writes it.
 std::string Written(const toml::node& node) {
   std::ostringstream text;
@@ -75,7 +70,7 @@ struct Reader {
     if (index < 0) {
       std::vector<std::string_view> names;
       for (const ParameterInfo& info : ParameterTable()) names.push_back(info.name);
-      Fail(node, fmt::format("unknown parameter '{}'{}", name, DidYouMean(name, names)));
+      Fail(node, fmt::format("unknown parameter '{}'{}", name, OrNearest(name, names)));
     }
     const ParameterInfo& info = ParameterTable()[static_cast<std::size_t>(index)];
     const std::optional<GivenValue> given = Given(node);
@@ -85,9 +80,8 @@ struct Reader {
     try {
       value = ReadParameterValue(info, *given);
     } catch (const ParameterError& e) {
-      Fail(node, fmt::format("{}; {}", e.what(),
-                             e.nearest.empty() ? "allowed: " + e.allowed
-                                               : fmt::format("did you mean '{}'?", e.nearest)));
+      const std::string hint = e.Hint();
+      Fail(node, hint.empty() ? e.what() : fmt::format("{}; {}", e.what(), hint));
     }
     config->parameters.emplace_back(name, value);
     config->origins["parameters." + name] = Place(node);
@@ -148,7 +142,7 @@ struct Reader {
     if (key == ConfigKeys().end()) {
       std::vector<std::string_view> names = {"parameters"};
       for (const ConfigKey& known : ConfigKeys()) names.push_back(known.name);
-      Fail(node, fmt::format("unknown key '{}'{}", name, DidYouMean(name, names)));
+      Fail(node, fmt::format("unknown key '{}'{}", name, OrNearest(name, names)));
     }
     ReadKey(*key, node);
   }

@@ -106,10 +106,8 @@ static_assert(std::ranges::equal(kKeys, kConfigKeyNames, {}, &ConfigKey::name));
 void CheckWord(const std::string& where, std::string_view key, const std::string& value,
                const std::vector<std::string_view>& allowed) {
   if (std::ranges::find(allowed, value) != allowed.end()) return;
-  const std::string_view near = NearestName(value, allowed);
   throw ConfigError(fmt::format("{}{} = \"{}\": expected {}{}", where, key, value,
-                                fmt::join(allowed, ", "),
-                                near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+                                fmt::join(allowed, ", "), OrNearest(value, allowed)));
 }
 
 }  // namespace

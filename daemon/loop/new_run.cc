@@ -21,32 +21,31 @@ void ControlLoop::CancelWaiting(std::int64_t id, const char* why) {
     JobRecord job;
     job.id = command.job;
     job.method = *method;
-    job.state = JobState::kCancelled;
-    job.end_tick = session_->tick();
-    job.explore.reason = ExploreReason::kCancelled;
-    job.move.end = MoveEnd::kStopped;
-    std::snprintf(job.error, sizeof job.error, "%s", why);
-    EmitJob(job);
+    EndJob(job, JobState::kCancelled, why);
     return true;
   });
 }
 
+void ControlLoop::EndJob(JobRecord job, JobState state, const char* why) {
+  job.state = state;
+  job.end_tick = session_->tick();
+  if (state == JobState::kCancelled) {
+    job.explore.reason = ExploreReason::kCancelled;
+    job.move.end = MoveEnd::kStopped;
+  }
+  std::snprintf(job.error, sizeof job.error, "%s", why);
+  EmitJob(job);
+}
+
 /// Ends the jobs of a run that another one takes the place of.
 void ControlLoop::CancelEverything(const char* why) {
-  const std::int64_t tick = session_->tick();
   CancelWaiting(0, why);
   commands_.clear();
   if (steps_left_ > 0) FinishStep(JobState::kCancelled, why);
   CollectOutput();
   session_->Snapshot(&scratch_.frame, false);
-  if (JobRecord job = scratch_.frame.job; job.id != 0 && job.state == JobState::kRunning) {
-    job.state = JobState::kCancelled;
-    job.end_tick = tick;
-    job.explore.reason = ExploreReason::kCancelled;
-    job.move.end = MoveEnd::kStopped;
-    std::snprintf(job.error, sizeof job.error, "%s", why);
-    EmitJob(job);
-  }
+  const JobRecord& job = scratch_.frame.job;
+  if (job.id != 0 && job.state == JobState::kRunning) EndJob(job, JobState::kCancelled, why);
 }
 
 void ControlLoop::Reset(const ControlRequest& request) {
@@ -113,9 +112,7 @@ void ControlLoop::EndRestore(JobState state, const char* error) {
     JobRecord job;
     job.id = restoring_.command.job;
     job.method = restoring_.checkpoint->job.method;
-    job.state = state;
-    std::snprintf(job.error, sizeof job.error, "%s", "the checkpoint was not restored");
-    EmitJob(job);
+    EndJob(job, state, "the checkpoint was not restored");
   }
   FinishStep(state, error);
   restoring_ = {};

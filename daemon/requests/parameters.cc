@@ -43,12 +43,8 @@ Command SetCommand(const ParameterInfo& info, const GivenValue& given, std::stri
   try {
     command.value = ReadParameterValue(info, given);
   } catch (const ParameterError& e) {
-    throw RpcException(RpcError{ErrorCode::kInvalidParams,
-                                e.what(),
-                                e.nearest.empty() ? fmt::format("allowed: {}", e.allowed)
-                                                  : fmt::format("did you mean '{}'?", e.nearest),
-                                std::string(param),
-                                {}});
+    throw RpcException(
+        RpcError{ErrorCode::kInvalidParams, e.what(), e.Hint(), std::string(param), {}});
   }
   return command;
 }
@@ -80,7 +76,8 @@ RpcError Together(std::vector<RpcError> errors, std::size_t more, bool one_code)
   ProblemList problems;
   RpcError all = errors.front();
   for (RpcError& error : errors) {
-    problems.Add(fmt::format("{}; {}", error.message, error.hint));
+    problems.Add(error.hint.empty() ? error.message
+                                    : fmt::format("{}; {}", error.message, error.hint));
     error.allowed.clear();  // every parameter, again and again
   }
   problems.AddUnkept(more);

@@ -194,6 +194,8 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
       {"joint_rad", &NoiseLevels::joint_rad},
       {"object_position_m", &NoiseLevels::object_position_m},
       {"object_rotation_rad", &NoiseLevels::object_rotation_rad},
+      {"taxel_pitch_m", &NoiseLevels::taxel_pitch_m},
+      {"object_rate_hz", &NoiseLevels::object_rate_hz},
       {"position_bias_m", &NoiseLevels::position_bias_m},
       {"force_bias_n", &NoiseLevels::force_bias_n},
       {"joint_bias_rad", &NoiseLevels::joint_bias_rad},
@@ -205,7 +207,9 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
       {"dropout_gap_s", &NoiseLevels::dropout_gap_s},
       {"latency_s", &NoiseLevels::latency_s}};
   for (const auto& [name, level] : kLevels) levels.*level = params.Number(name, levels.*level);
-  const double sample_s = std::max(service.dt(), 1 / kSensorRateHz);
+  levels.object_delay_frames =
+      static_cast<int>(params.Integer("object_delay_frames", levels.object_delay_frames));
+  const double sample_s = SampleTime(service.dt());
   if (const double gap = params.Number("dropout_gap_s", 0); gap > 0 && gap < sample_s)
     throw RpcException(
         RpcError{ErrorCode::kInvalidParams,

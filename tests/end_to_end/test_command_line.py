@@ -32,11 +32,45 @@ class Words(Case):
             (["move", "--offset", "0,0,5mm"], "--offset", "--by"),
             (["move", "--ofset", "0,0,5mm"], "--ofset", "--by"),
             (["move", "--rotation", "0,0,5"], "--rotation", "--turn"),
+            (["explore", "ring", "--criterion", "manip"], "manip", "regrasp explore --criterion manipulability"),
+            (["plot", "qualty"], "qualty", "regrasp plot quality"),
+            (["help", "nose"], "nose", "regrasp help noise"),
         ]:
             with self.subTest(words):
                 cause, hint = self.refused(2, *words)
                 self.assertIn(f"'{wrong}'", cause)
                 self.assertIn(nearest, hint)
+
+    def test_names_that_are_no_words_of_the_grammar_have_a_nearest_too(self):
+        out = ["-n", "1", "-o", self.dir / "out"]
+        for code, words, near in [
+            (6, ["hand", "check", "shdow"], "shadow"),
+            (6, ["object", "show", "eg"], "egg"),
+            (6, ["up", "--hand", "shdow"], "shadow"),
+            (6, ["experiment", "rotation", "--object", "zoo_cylinder_lyin", *out], "zoo_cylinder_lying"),
+            (2, ["experiment", "rotation", "--noise", "papr", *out], "paper"),
+            (2, ["experiment", "rotation", "--case", "a: objct=egg", *out], "object"),
+            (6, ["experiment", "rotation", "--set", "gait.spped=0.3", *out], "gait.speed_rad_s"),
+        ]:
+            with self.subTest(words):
+                self.assertIn(f"did you mean '{near}'?", self.refused(code, *words)[0])
+        self.assertIn("allowed are object, tilt, push, turns, criterion, gravity and names of parameters",
+                      self.refused(2, "experiment", "rotation", "--case", "a: speed=3", *out)[0])
+        self.assertIn("help up", self.refused(6, "up", "--hand", "shdow")[1])
+
+    def test_hints_name_the_socket_that_the_line_has_named(self):
+        named = self.dir / "a socket"
+        for words, hint in [(["statu"], f"regrasp -s '{named}' status"), (["status"], f"regrasp -s '{named}' up"), (["explore"], "regrasp help explore")]:
+            done = subprocess.run([REGRASP, *words, "-s", named], env=environment(), capture_output=True, text=True, timeout=HANG_S, check=False)
+            self.assertEqual(done.stderr.splitlines()[1], "  try: " + hint)
+            done = subprocess.run([REGRASP, *words], env=environment(REGRASP_SOCKET=str(named)), capture_output=True, text=True, timeout=HANG_S, check=False)
+            self.assertEqual(done.stderr.splitlines()[1], "  try: " + hint.replace(f"-s '{named}' ", ""))
+
+    def test_what_prints_no_table_refuses_csv(self):
+        for words in (["object", "show", "egg"], ["hand", "check", "shadow"], ["hand", "new", "shadow", "-o", self.dir / "x.toml"],
+                      ["replay", self.dir / "x.mcap"]):
+            with self.subTest(words):
+                self.assertIn("prints no table", self.refused(2, "--csv", *words)[0])
 
     def test_options_that_are_like_no_other_get_the_help_and_no_guess(self):
         for words in (["explore", "ring", "--offset", "5mm"], ["move", "--shift", "0,0,5"], ["rotate", "--rate", "4"], ["push", "--weight", "1"]):
@@ -74,7 +108,13 @@ class Words(Case):
         for words, told in [
             (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "50s"], "allowed are mm, cm, m, um"),
             (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "1cm"], "--object-size 10"),
-            (["experiment", "rotation", "-o", "none", "--tilt", "1turn"], "--tilt 360: allowed are -180 to 180"),
+            (["experiment", "rotation", "-o", "none", "--tilt", "1turn"], "--tilt 360: allowed are -180 to 180 deg"),
+            (["hand", "new", "none.urdf", "-o", "none.toml", "--tilt", "181"], "--tilt 181: allowed are -180 to 180 deg"),
+            (["hand", "new", "none.urdf", "-o", "none.toml", "--object-size", "1m"], "--object-size 1000: allowed are 20 to 150 mm"),
+            (["hand", "new", "none.urdf", "-o", "none.toml", "--seed", "9007199254740993"], "allowed are 0 to 2^53"),
+            (["experiment", "rotation", "-o", "none", "--push", "-1"], "--push -1: allowed are 0 to 100 N"),
+            (["experiment", "rotation", "-o", "none", "--speed", "600"], "--speed 600: allowed are 0.0572958 to 572.957 deg/s"),
+            (["rotate", "--turns", "1", "--speed", "600"], "--speed 600: allowed are 0.0572958 to 572.957 deg/s"),
             (["experiment", "rotation", "-o", "none", "--tilt", "3mm"], "allowed are deg, rad, turn"),
         ]:
             with self.subTest(words):

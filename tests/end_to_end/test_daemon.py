@@ -147,6 +147,9 @@ class Session(DaemonCase):
         self.assertEqual(self.json("noise", "show"), noise)
         self.assertEqual(self.json("noise", "preset", "coarse")["preset"], "coarse")
         self.assertEqual(self.json("noise", "off")["position_m"], 0)
+        taxels = self.json("noise", "set", "--taxel-pitch", "4", "--object-rate", "30", "--object-delay-frames", "2")
+        self.assertEqual((taxels["taxel_pitch_m"], taxels["object_rate_hz"], taxels["object_delay_frames"], taxels["preset"]), (0.004, 30, 2, "custom"))
+        self.assertIn("allowed are 0 to 7", self.refused(2, "noise", "set", "--object-delay-frames", "8")[0])
         self.assertEqual(self.json("param", "set", "object.friction", "0.5")["value"], 0.5)
         self.assertEqual(self.json("param", "get", "object.friction")["value"], 0.5)
         self.assertEqual(self.json("param", "set", "gravity", "0,0,-1")["value"], [0, 0, -1])
@@ -183,7 +186,7 @@ class Session(DaemonCase):
         self.refused(5, "move", "--by", "0,0,3")
         self.refused(2, "move")
         self.expect(0, "grasp", "--wait")
-        for words, part in [(["--by", "0,0,60"], "--by 60: allowed are -50 to 50 MM"), (["--by", "40,40,0"], "--by is 56.57 mm long; allowed are at most 50"),
+        for words, part in [(["--by", "0,0,60"], "--by 60: allowed are -50 to 50 mm"), (["--by", "40,40,0"], "--by is 56.57 mm long; allowed are at most 50"),
                             (["--turn", "150,150,0"], "--turn is 212.1 degrees long; allowed are at most 180"), (["--by", "0,0,0"], "leave nothing to move"), (["--turn", "1,2"], "--turn")]:
             with self.subTest(words):
                 cause, _ = self.refused(2, "move", *words)

@@ -51,6 +51,9 @@ class Paper(ExperimentCase):
             self.assertTrue((self.dir / picture).read_bytes().startswith(b"\x89PNG"), picture)
         for figure in ("figure1.png", "figure2.png", "figure3a.png", "figure3b.png", "sweep/summary.png"):
             self.assertIn(f"(reproduction/{figure})", page)
+        for link in re.findall(r"\]\(([^)]*)\)", page):
+            self.assertTrue((self.dir / link).exists(), link)
+        self.assertIn("(docs/paper_map.md of the source)", page)
         self.assertEqual(list(self.dir.rglob("*.checkpoint")), [], "what its trials began from is of no use to anybody")
         claims = [line.split(" | ") for line in page.splitlines() if line.startswith("| ") and line.endswith((" yes |", " partly |", " no |"))]
         self.assertGreaterEqual(len(claims), 12)

@@ -96,8 +96,6 @@ class Lockstep(DaemonCase):
         text = (SOURCE / "docs" / page).read_text()
         exact = self.rounds_as_the_machine_of_readme()
         self.expect(0, "down")
-        os.chdir(self.dir)
-        self.addCleanup(os.chdir, SOURCE)
         figures = lambda line: re.sub(r"-?\d+(\.\d+)?", "0", line)  # pylint: disable=unnecessary-lambda-assignment
         compared = 0
         for block in re.findall(r"^```\n(\$ regrasp .*?)^```", text, re.M | re.S):
@@ -106,7 +104,7 @@ class Lockstep(DaemonCase):
                 if words.startswith("up "):
                     self.regrasp("down")
                     words += f" --models-dir {SOURCE / 'models'} --output-dir {self.dir / 'walked'}"
-                done = self.regrasp(*words.split())
+                done = self.regrasp(*words.split(), cwd=self.dir)
                 self.assertLessEqual(done.returncode, 1, done.stderr)  # 2000 cycles are few
                 if not printed:
                     continue  # left out there

@@ -84,6 +84,17 @@ TEST(NearestName, FindsTypingErrorsAndNothingElse) {
   EXPECT_EQ(NearestName("", names), "");
   // One slip from both: the beginning decides, not the order.
   EXPECT_EQ(NearestName("sped", std::vector<std::string_view>{"seed", "speed"}), "speed");
+  // A name that is only begun, and one without its last words.
+  EXPECT_EQ(NearestName("manip", std::vector<std::string_view>{"stability", "manipulability"}),
+            "manipulability");
+  EXPECT_EQ(
+      NearestName("gait.spped", std::vector<std::string_view>{"gait.slip_s", "gait.speed_rad_s"}),
+      "gait.speed_rad_s");
+  EXPECT_EQ(NearestName("zoo_bxo", std::vector<std::string_view>{"zoo_egg", "zoo_box_flat"}),
+            "zoo_box_flat");
+  EXPECT_EQ(NearestName("ma", std::vector<std::string_view>{"manipulability"}), "");
+  EXPECT_EQ(OrNearest("rign", names), "; did you mean 'ring'?");
+  EXPECT_EQ(OrNearest("elbow", names), "");
   EXPECT_EQ(EditDistance("abcd", "acbd"), 1u);  // a swap is one slip
 }
 

@@ -1,5 +1,6 @@
 /// The loaders refuse what is wrong, and say where, what and what is allowed.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -247,6 +248,7 @@ TEST_F(LoaderTest, ReadsFrictionBesideTheObject) {
 
 TEST_F(LoaderTest, AnswersUnknownNamesWithTheKnownOnes) {
   ExpectRefused({"\"maxi\"", "available are mini"}, "maxi");
+  ExpectRefused({"\"mni\"", "; did you mean 'mini'?; available are mini"}, "mni");
   ExpectRefused({"\"cone\"", "available are ball"}, "mini", "cone");
   ExpectRefused({"gone.urdf", "not found"}, "gone.urdf");
   ExpectRefused({"available are mini"}, "../hands/mini");
@@ -319,6 +321,24 @@ TEST_F(LoaderTest, RefusesOpenAndInsideOutMeshes) {
   ExpectRefused({"tetra.obj", "volume is -", "counter-clockwise"});
   Write("objects/tetra.obj", "f one two\n");
   ExpectRefused({"tetra.obj"});
+}
+
+TEST_F(LoaderTest, WhatAHandStandsOnMayBeLargeAndItsPalmMayNot) {
+  const std::string box =
+      "<collision><geometry><box size=\"3 2 0.1\"/></geometry></collision></link>";
+  EditHand("<link name=\"palm\"/>", "<link name=\"palm\">" + box);
+  ExpectRefused({"link \"palm\"", "has a length of 3 m", "at most 1 m"});
+  const std::string joint =
+      "<joint name=\"J\" type=\"fixed\"><parent link=\"{}\"/><child link=\"{}\"/></joint>";
+  for (const bool below : {false, true}) {  // a table that carries the palm, or that it carries
+    EditHand("<link name=\"palm\"/>", "<link name=\"palm\"/><link name=\"table\">" + box +
+                                          fmt::format(fmt::runtime(joint), below ? "palm" : "table",
+                                                      below ? "table" : "palm"));
+    if (below)
+      ExpectRefused({"link \"table\"", "has a length of 3 m", "at most 1 m"});
+    else
+      EXPECT_EQ(Load().hand.links.front().shapes.size(), 1u);
+  }
 }
 
 }  // namespace

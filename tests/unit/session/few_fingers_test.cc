@@ -6,6 +6,7 @@
 
 #include "core/gait/may_not_leave.h"
 #include "core/hand/scenario.h"
+#include "core/session/activity/activity.h"
 #include "core/session/event_log.h"
 
 namespace regrasp {
@@ -46,7 +47,7 @@ TEST_F(FewFingers, WhatIsSaidOfAFingerHasRoomForItsName) {
   EventLog log;
   log.Emit(0, EventKind::kRefused, 0, 0, "job %lld: %s: %s", 123456789LL, "failed", reason.c_str());
   EXPECT_EQ(log.Take().front().text, "job 123456789: failed: " + reason);
-  EXPECT_LT(reason.size(), sizeof(JobRecord::error));
+  EXPECT_EQ(ActivityStep::Failed(reason.c_str()).error, reason);
 }
 
 TEST_F(FewFingers, OfThreeFingersNoneExplores) {

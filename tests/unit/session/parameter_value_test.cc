@@ -95,16 +95,14 @@ TEST(ParameterValue, SaysWhatIsWrongAndWhatIsAllowed) {
   EXPECT_NE(Complaint("object.friction", kNan), "");
   EXPECT_NE(Complaint("object.friction", true), "");
   EXPECT_EQ(Complaint("exploration.max_cycles", 1.5),
-            "exploration.max_cycles = 1.5: expected an integer, 1 ... 1000000 ticks|an integer, 1 "
-            "... 1000000 ticks|");
-  EXPECT_EQ(
-      Complaint("gait.mode", "explorin"),
-      "gait.mode = 'explorin': expected exploring or returning|exploring or returning|exploring");
+            "exploration.max_cycles = 1.5: expected an integer, 1 ... 1000000 ticks||");
+  EXPECT_EQ(Complaint("gait.mode", "explorin"),
+            "gait.mode = 'explorin': expected exploring or returning||exploring");
   EXPECT_NE(Complaint("gait.mode", 2.0), "");
   EXPECT_NE(Complaint("gait.mode", 0.5), "");
   EXPECT_NE(Complaint("gait.mode", -1.0), "");
   EXPECT_NE(Complaint("gait.mode", kNan), "");
-  EXPECT_EQ(Complaint("gait.hop", 2.0), "gait.hop = 2: expected true or false|true or false|");
+  EXPECT_EQ(Complaint("gait.hop", 2.0), "gait.hop = 2: expected true or false||");
   EXPECT_EQ(Complaint("gravity", std::vector<double>{1, 2}),
             "gravity is 3 numbers, not [1, 2]|3 numbers, each -50 ... 50 m/s2|");
   EXPECT_NE(Complaint("gravity", 9.81), "");
