@@ -100,6 +100,14 @@ class BadFiles(DaemonCase):
         self.assertIn(f"note: bad.mcap lost {9 + struct.unpack_from('<Q', data, place + 1)[0]} bytes at {place} (", plot.stderr)
         self.assertEqual(len(self.json("plot", "quality", path, "-o", self.dir / "made.png", code=1)["lost"]), 1)
 
+        # What is lost after the job that is shown is none of the picture's.
+        data, (place, start, _) = bytearray(self.good.read_bytes()), chunks[-1]
+        self.assertGreater(start * 1e-9, self.json("job", "show", "1")["ended_s"])
+        data[place + 8 + struct.unpack_from("<Q", data, place + 1)[0]] ^= 16
+        late = self.file(data)
+        self.assertEqual(len(self.json("replay", late, code=1)["lost"]), 1)
+        self.assertEqual(self.json("plot", "contacts", late, "-o", self.dir / "made.png")["lost"], [])
+
         path = self.file(self.good.read_bytes()[: len(data) // 2])
         for words in (["replay", path], ["plot", "quality", path, "-o", self.dir / "made.png"], cases["film"]):
             self.remove_made()

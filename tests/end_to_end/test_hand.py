@@ -279,10 +279,11 @@ class Hand(Case):
         self.assertTrue(all(finger["held_load_margin_without_n"] >= 0 for finger in told["fingers"]))
         score = (self.dir / "flat.toml").read_text(encoding="utf-8").splitlines()[1]
         self.assertIn(f"N of the ball of {1e3 * told['ball_m']:g} mm that stands for the object; without", score)
-        if used := told["used"]:
-            self.assertEqual(any("turns was completed" in remark for remark in told["remarks"]), used["turned"] == 0)
-            for name, count in used["may_not_leave"].items():
-                self.assertEqual(any(f"{name} may not leave in {count} of {used['turns']}" in remark for remark in told["remarks"]), count > 0)
+        used = told["used"]
+        self.assertEqual(any("turns was completed" in remark for remark in told["remarks"]), used["turned"] == 0)
+        self.assertEqual(len(used["may_not_leave"]), 4)
+        for name, count in used["may_not_leave"].items():
+            self.assertEqual(any(f"{name} may not leave in {count} of {used['turns']}" in remark for remark in told["remarks"]), count > 0)
         self.addCleanup(self.regrasp, "down")
         up = self.expect(0, "up", "--hand", self.dir / "flat.toml", "--clock", "lockstep")
         self.assertNotIn("warning: the object", up.stdout)
