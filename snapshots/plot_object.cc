@@ -13,7 +13,7 @@ namespace regrasp {
 namespace {
 
 constexpr Colour kLight{244, 236, 212}, kDark{222, 205, 160};
-constexpr double kNames = 112;  // width of the table's first column
+constexpr double kNames = 120;  // width of the table's first column
 constexpr std::array<Colour, 3> kAxes = {Colour{190, 60, 50}, Colour{50, 135, 60},
                                          Colour{50, 80, 180}};
 
@@ -68,7 +68,7 @@ void PlotObject(const ObjectModel& object, std::span<const TableRow> rows,
   body.mesh = MeshOf(object);
   body.colour = kLight;
   body.second_colour = kDark;
-  const double gap = 20, top = 104, side_width = 420;
+  const double gap = 20, top = 104, side_width = 480;
   const double width = (canvas.width() - side_width - 3 * gap) / 2,
                height = canvas.height() - top - 24;
   const std::array<Vector3d, 2> to_viewer = {Vector3d(0.55, -1, 0.45), Vector3d(1, 0.35, 0.9)};

@@ -17,6 +17,7 @@
 #include "core/posture/hand_guess.h"
 #include "core/posture/scenario_text.h"
 #include "core/posture/way_in.h"
+#include "core/protocol/methods.h"
 #include "core/session/few_fingers.h"
 #include "core/world/stepper_choice.h"
 
