@@ -35,7 +35,9 @@ struct Options {
   /// Throws Failure(kUsage) where it is no number in the range.
   double Number(const std::string& flag, double otherwise, double min, double max) const;
   LoadOptions load() const {
-    return {Has("--force"), Has("--inertia-from-shape"), Has("--fill-missing-meshes")};
+    return {.force = Has("--force"),
+            .inertia_from_shape = Has("--inertia-from-shape"),
+            .fill_missing_meshes = Has("--fill-missing-meshes")};
   }
 };
 

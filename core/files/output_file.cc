@@ -44,7 +44,7 @@ void CheckWritable(const std::string& target, Draft::Existing existing) {
 
 std::string WhyNoOutput(const std::string& directory) {
   std::error_code error;
-  const fs::path there = ThereOf(fs::absolute(directory.empty() ? "." : directory, error));
+  const fs::path there = ThereOf(fs::absolute(fs::path(directory) / "it", error).parent_path());
   if (error) return "the current directory has gone";
   if (!fs::is_directory(there, error)) return there.string() + " is no directory";
   std::string probe = (there / ".regrasp-XXXXXX").string();

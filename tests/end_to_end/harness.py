@@ -66,8 +66,11 @@ class Case(unittest.TestCase):
         self.socket = self.dir / "r" / "regrasp.sock"
 
     def regrasp(self, *words, env=None, stdin="", binary=REGRASP, cwd=None):
-        return subprocess.run([str(binary), "-s", str(self.socket), *map(str, words)], input=stdin, env=env or environment(),
+        """Hints are told without the socket, which every line here names."""
+        done = subprocess.run([str(binary), "-s", str(self.socket), *map(str, words)], input=stdin, env=env or environment(),
                               capture_output=True, text=True, timeout=HANG_S, check=False, cwd=cwd)
+        done.stderr = done.stderr.replace(f"regrasp -s {self.socket} ", "regrasp ")
+        return done
 
     def expect(self, code, *words, **options):
         """Runs `regrasp`, checks its exit code, and that success is silent on stderr and failure on stdout."""
@@ -78,14 +81,14 @@ class Case(unittest.TestCase):
         return done
 
     def refused(self, code, *words, **options):
-        """An error: nothing on stdout, two lines on stderr; returns the two lines, the hint without this test's socket."""
+        """An error: nothing on stdout, two lines on stderr; returns the two lines."""
         done = self.expect(code, *words, **options)
         self.assertEqual(done.stdout, "")
         lines = done.stderr.splitlines()
         self.assertEqual(len(lines), 2, done.stderr)
         self.assertTrue(lines[0].startswith("regrasp: "), done.stderr)
         self.assertTrue(lines[1].startswith("  try: "), done.stderr)
-        return [lines[0], lines[1].replace(f"regrasp -s {self.socket} ", "regrasp ")]
+        return lines
 
     def refused_list(self, code, *words, **options):
         """An error of many: nothing on stdout, on stderr their number, one a line, the next command; returns the many."""

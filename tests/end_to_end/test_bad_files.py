@@ -39,7 +39,7 @@ class BadFiles(DaemonCase):
         super().setUp()
         self.json("record", "start", "good.mcap")
         self.expect(0, "grasp")
-        self.expect(0, "step", 2500, "--wait")
+        self.expect(0, "step", 2800, "--wait")
         self.good = pathlib.Path(self.json("record", "stop")["path"])
         self.json("checkpoint", "save", "good")
 

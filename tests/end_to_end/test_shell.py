@@ -202,7 +202,7 @@ class Waiting(DaemonCase):
         session.press("\x03")
         self.assertEqual(session.finish(), 130)
         self.assertIn("job 2 goes on", session.text())
-        self.assertIn("try: regrasp job wait 2", session.text())
+        self.assertIn(f"try: regrasp -s {self.socket} job wait 2", session.text())
         self.assertEqual(self.json("job", "show", "2")["state"], "running")
         self.assertEqual(self.json("job", "cancel", "2")["id"], 2)
 

@@ -147,7 +147,7 @@ class Leaving(Top):
         self.check_restored(session)
         after = session.raw[session.raw.rindex(LEAVE_ALTERNATE_SCREEN):].decode()
         self.assertIn("closed the connection", after)
-        self.assertIn("try: regrasp up", after)
+        self.assertIn(f"try: regrasp -s {self.socket} up", after)
 
 
 class Again(Case):

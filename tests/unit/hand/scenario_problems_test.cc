@@ -51,10 +51,11 @@ TEST_F(ScenarioProblems, TellsAllMistakesOfAScenarioInTheOrderOfItsLines) {
   // invented.
   Write("hands/mini.toml",
         spoilt({"tip_link = \"tip\"", "tip = \"tip\"", "B = 20.5", "B = 400", "B = 70", "D = 70"}));
-  ExpectInOrder({"4 errors:\n  ", "mini.toml:6: key \"tip_link\" is missing",
-                 "mini.toml:8: unknown key \"tip\"; allowed are name, tip_link",
-                 "mini.toml:11: q_preshape_deg.B [deg] = 400; allowed -28.6529 .. 85.9487",
-                 "mini.toml:14: unknown key \"D\"; allowed are A, B"});
+  ExpectInOrder(
+      {"4 errors:\n  ", "mini.toml:6: key \"tip_link\" is missing",
+       "mini.toml:8: unknown key \"tip\"; nearest is \"tip_link\"; allowed are name, tip_link",
+       "mini.toml:11: q_preshape_deg.B [deg] = 400; allowed -28.6529 .. 85.9487",
+       "mini.toml:14: unknown key \"D\"; allowed are A, B"});
   Write("hands/mini.toml",
         spoilt({"tip_link = \"tip\"", "tip_link = \"tap\"", "B = 20.5", "B = 400"}));
   ExpectInOrder({"2 errors:\n  ",
