@@ -49,7 +49,7 @@ sockaddr_un Address(const std::string& path) {
     throw CliError(kPermission,
                    fmt::format("not allowed to open {}{}", path,
                                who.empty() ? "" : fmt::format(": it belongs to {}", who)),
-                   fmt::format("regrasp up    (a daemon of your own; or run as {})",
+                   fmt::format("regrasp -s PATH up    (a daemon of your own; or run as {})",
                                who.empty() ? "the user who started this one" : who));
   }
   if (exists && !S_ISSOCK(info.st_mode)) {

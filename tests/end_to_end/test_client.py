@@ -69,7 +69,7 @@ class Sockets(Case):
         self.assertEqual((done.returncode, done.stdout), (77, ""), done.stderr)
         owner = pwd.getpwuid(os.geteuid()).pw_name
         self.assertIn(f"not allowed to open {self.socket}: it belongs to {owner}", done.stderr)
-        self.assertIn(f"try: regrasp up    (a daemon of your own; or run as {owner})", done.stderr)
+        self.assertIn(f"try: regrasp -s PATH up    (a daemon of your own; or run as {owner})", done.stderr)
         # Where the directory is closed too, nobody can tell whose it is.
         self.socket.parent.chmod(0)
         done = self.as_nobody("-s", str(self.socket), "status", env=environment())
@@ -230,7 +230,7 @@ class Waiting(FakeCase):
         out, err = process.communicate(timeout=HANG_S)
         self.assertEqual((process.returncode, out), (130, ""))
         self.assertIn("job 7 goes on", err)
-        self.assertIn("regrasp job wait 7", err)
+        self.assertIn(f"regrasp -s {self.socket} job wait 7", err)
         self.assertNotIn("job.cancel", [method for method, _ in fake.requests])
 
     def test_progress_is_for_terminals(self):
