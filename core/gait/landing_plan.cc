@@ -9,6 +9,7 @@
 #include "core/gait/gait_parameters.h"
 #include "core/gait/sure_grasp.h"
 #include "core/gait/sure_reserve.h"
+#include "core/hand/box_gap.h"
 #include "core/hand/shape_distance.h"
 #include "core/quality/load_margin.h"
 
@@ -100,8 +101,9 @@ Vector3d TurnAhead(const ControlTick& tick, const LandingPlan::Request& request,
   return std::min(reserve, tick.gait.step_rad) * request.axis_W;
 }
 
-/// Between the last two links of two fingers [m].
-double GapOfFingers(const FingerPosture& one, const FingerPosture& two) {
+/// Between the last two links of the fingers `i` and `k` [m].
+double GapOfFingers(const HandModel& hand, int i, const FingerPosture& one, int k,
+                    const FingerPosture& two) {
   const auto all = [](const FingerPosture& finger) {
     FixedVector<Bone, 5> bones;
     bones.push_back(finger.tip);
@@ -112,6 +114,13 @@ double GapOfFingers(const FingerPosture& one, const FingerPosture& two) {
   double gap = 1;
   for (const Bone& a : all(one))
     for (const Bone& b : all(two)) gap = std::min(gap, Gap(a, b));
+  const Boxes boxes_one = BoxesOf(hand, i, one), boxes_two = BoxesOf(hand, k, two);
+  for (const PlacedBox& a : boxes_one) {
+    for (const Bone& b : all(two)) gap = std::min(gap, Gap(a, b));
+    for (const PlacedBox& b : boxes_two) gap = std::min(gap, Gap(a, b));
+  }
+  for (const PlacedBox& b : boxes_two)
+    for (const Bone& a : all(one)) gap = std::min(gap, Gap(b, a));
   return gap;
 }
 
@@ -179,7 +188,7 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   double gap = clearance;
   for (int i : tick.grasp.without(finger)) {
     const FingerPosture other = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
-    gap = std::min(gap, GapOfFingers(there, other));
+    gap = std::min(gap, GapOfFingers(hand, finger, there, i, other));
   }
   if (gap < clearance) score -= penalty * std::min(kMostNear, (clearance - gap) / kNearPenalty);
   landing->blocked = gap < -tick.gait.landing_overlap;
