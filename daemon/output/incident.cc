@@ -68,6 +68,30 @@ void FindMarginAndLifted(Incident* incident) {
   }
 }
 
+/// Of each finger that holds and touches in the half second before the onset, but for its last
+/// tenth, in which what is lost begins to slip.
+void FindWeak(const HandModel& hand, Incident* incident) {
+  constexpr double kWindow = 0.5, kSlips = 0.1;  // [s]
+  constexpr int kFewest = 20;                    // frames (0.2 s)
+  constexpr double kShare = 0.6, kLeast = 0.5;   // of what is asked for; what is asked for [N]
+  for (int f = 0; f < hand.num_fingers(); ++f) {
+    WeakFinger sum;
+    int count = 0;
+    for (const auto& frame : incident->frames) {
+      const double before = incident->onset_s - frame->time_s;
+      const FingerFrame* finger = FingerOf(*frame, f);
+      if (before > kWindow || before < kSlips || !finger || !finger->true_contact ||
+          finger->role != FingerRole::kHold)
+        continue;
+      sum.force += finger->true_force_W.norm();
+      sum.asked += finger->f_command_W.norm();
+      ++count;
+    }
+    if (count < kFewest || sum.asked < count * kLeast || sum.force > kShare * sum.asked) continue;
+    incident->weak.push_back({f, sum.force / count, sum.asked / count});
+  }
+}
+
 /// The last frame until the onset.
 const Frame& OnsetFrame(const Incident& incident) {
   const auto after = std::ranges::find_if(
@@ -124,6 +148,14 @@ std::string MarginText(const Incident& incident) {
                      incident.least_margin, limit);
 }
 
+std::string WeakText(const Incident& incident, const HandModel& hand) {
+  std::string text;
+  for (const WeakFinger& weak : incident.weak)
+    text += fmt::format(" {} pressed with {:.1f} N where {:.1f} N were asked for.",
+                        FingerName(hand, weak.finger), weak.force, weak.asked);
+  return text;
+}
+
 std::string FrictionText(const Incident& incident) {
   const double friction = incident.frames.back()->friction;
   const double counted_on = incident.frames.back()->friction_counted;
@@ -146,7 +178,7 @@ std::string Cause(const Incident& incident, const HandModel& hand) {
   if (incident.frames.empty()) return text + "; nothing is known of the time before.";
   text += " while " + Situation(incident, hand) + ": " + DisturbanceText(incident);
   return text + "; " + EndsText(incident, hand) + "." + MarginText(incident) +
-         FrictionText(incident) + MassText(incident);
+         WeakText(incident, hand) + FrictionText(incident) + MassText(incident);
 }
 
 }  // namespace
@@ -181,6 +213,7 @@ Incident MakeIncident(const IncidentSource& source, const HandModel& hand) {
   if (!incident.frames.empty()) incident.state = incident.frames.back()->state;
   FindContactEnds(hand, &incident);
   FindMarginAndLifted(&incident);
+  FindWeak(hand, &incident);
   incident.cause = Cause(incident, hand);
   return incident;
 }

@@ -40,6 +40,15 @@ struct ContactEnd {
   bool lifted = false;  ///< it regrasped: the gait had taken it off
 };
 
+/// A finger that held, but pressed with far less force than it was asked for: it leans on another
+/// finger, or on the edge of something.
+struct WeakFinger {
+  int finger = -1;
+  double force =
+      0;  ///< on the object, noise-free, mean of the last half second before the onset [N]
+  double asked = 0;  ///< the same of what control asked for [N]
+};
+
 struct Incident {
   Event event;
   double time_s = 0;                                 ///< of the event
@@ -59,7 +68,8 @@ struct Incident {
   bool has_margin = false;  ///< the next two are known
   double least_margin = 0;  ///< smallest load margin of the grasp until the onset [N]
   double least_margin_s = 0;
-  int lifted = -1;  ///< the finger that the gait had taken off at the onset; -1: none
+  int lifted = -1;               ///< the finger that the gait had taken off at the onset; -1: none
+  std::vector<WeakFinger> weak;  ///< in the order of the hand's fingers
   std::vector<Event> disturbances;  ///< pushes and changes of parameters or noise in the window
   std::string cause;                ///< the sentence
 };

@@ -27,12 +27,18 @@ Json FindingsJson(const Incident& incident, const HandModel& hand) {
     margin = {{"load_margin_n", incident.least_margin},
               {"time_s", incident.least_margin_s},
               {"before_s", incident.time_s - incident.least_margin_s}};
+  Json weak = Json::array();
+  for (const WeakFinger& finger : incident.weak)
+    weak.push_back({{"finger", NameOrNull(hand, finger.finger)},
+                    {"force_n", finger.force},
+                    {"asked_n", finger.asked}});
   Json disturbances = Json::array();
   for (const Event& event : incident.disturbances)
     disturbances.push_back(EventNewsJson(event, hand, incident.dt));
   return {{"contacts_ended", std::move(ends)},
           {"least_load_margin", std::move(margin)},
           {"lifted_finger", NameOrNull(hand, incident.lifted)},
+          {"weak_fingers", std::move(weak)},
           {"disturbances", std::move(disturbances)}};
 }
 

@@ -132,6 +132,33 @@ TEST_F(IncidentRecord, FrictionBelowWhatControlCountsOnIsSaid) {
   EXPECT_TRUE(Says(Make(), "Friction was 0.2, where control counts on 0.37"));
 }
 
+// It leans on another finger, say. What slips in the last tenth of a second presses less, too.
+TEST_F(IncidentRecord, AFingerThatPressesFarLessThanAskedIsNamed) {
+  Off(2, 4700);
+  for (Frame& frame : frames)
+    for (FingerFrame& finger : frame.fingers) {
+      finger.role = FingerRole::kHold;
+      finger.f_command_W = Vector3d(0, 0, 2);
+      finger.true_force_W = Vector3d(0, 0, frame.tick > 4600 ? 0.1 : 1.9);
+    }
+  const auto make = [&] {
+    source.frames.clear();
+    return Make();
+  };
+  EXPECT_FALSE(Says(make(), "asked for"));
+  for (Frame& frame : frames) frame.fingers[1].true_force_W = Vector3d(0, 0.8, 0);
+  const Incident incident = make();
+  EXPECT_TRUE(Says(incident, " two pressed with 0.8 N where 2.0 N were asked for."))
+      << incident.cause;
+  const Json weak = IncidentJson(incident, hand)["findings"]["weak_fingers"];
+  ASSERT_EQ(weak.size(), 1u);
+  EXPECT_EQ(weak[0]["finger"], "two");
+  EXPECT_NEAR(weak[0]["force_n"].get<double>(), 0.8, 1e-9);
+  EXPECT_NEAR(weak[0]["asked_n"].get<double>(), 2, 1e-9);
+  for (Frame& frame : frames) frame.fingers[1].role = FingerRole::kMove;
+  EXPECT_FALSE(Says(make(), "asked for"));
+}
+
 TEST_F(IncidentRecord, BeforeTheFingersHoldTheObjectHasNoPlaceToBeOff) {
   for (Frame& frame : frames)
     if (frame.tick < 4000) {
