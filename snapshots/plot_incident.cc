@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include "core/common/finger_letters.h"
 #include "core/gait/gait_table.h"
 #include "snapshots/axes.h"
 #include "snapshots/gait_strip.h"
@@ -52,10 +52,10 @@ BandLook LookOfActivity(int finger, int value) {
   return {"", kWhite};
 }
 
-/// A capital for each finger: the first letter of its name.
 std::string LetterOf(const HandModel& hand, int finger) {
-  const std::string name = FingerName(hand, finger);
-  return {static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())))};
+  std::vector<std::string> names;
+  for (const Finger& of : hand.fingers) names.push_back(of.name);
+  return {FingerLetters(names)[static_cast<std::size_t>(finger)]};
 }
 
 /// Lines of at most `room` wide.

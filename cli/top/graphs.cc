@@ -9,6 +9,7 @@
 #include "cli/print/braille.h"
 #include "cli/print/print.h"
 #include "cli/top/panels.h"
+#include "core/common/finger_letters.h"
 #include "core/exploration/criterion.h"
 
 namespace regrasp::cli {
@@ -122,12 +123,13 @@ std::string ActiveMark(const DashboardModel& model, PhiOf measure) {
 
 Graph ManipulabilityGraph(const DashboardModel& model, const std::string& chosen) {
   const auto names = model.Fingers();
+  const std::vector<char> letters = FingerLetters(names);
   const std::string finger = chosen.empty() ? model.ExploringFinger() : chosen;
   Graph graph;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (finger.empty() || names[i] == finger)
       graph.curves.push_back(
-          {&model.manipulability(names[i]), CurveInk(static_cast<int>(i)), FingerLetter(names[i])});
+          {&model.manipulability(names[i]), CurveInk(static_cast<int>(i)), letters[i]});
   graph.title = fmt::format("Manipulability φ{}{}", finger.empty() ? "" : " " + finger,
                             ActiveMark(model, PhiOf::kManipulability));
   return graph;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "cli/print/print.h"
+#include "core/common/finger_letters.h"
 #include "core/protocol/methods.h"
 
 namespace regrasp::cli {
@@ -62,9 +63,11 @@ std::optional<Request> Keys::Press(int key, const DashboardModel& model) {
       return ChangeNoise(At(model.status(), "noise"), key != '-');
     case 'e': {
       std::vector<Choice> choices;
-      for (const auto& name : model.Fingers())
+      const std::vector<std::string> names = model.Fingers();
+      const std::vector<char> letters = FingerLetters(names);
+      for (std::size_t i = 0; i < names.size(); ++i)
         choices.push_back(
-            {std::tolower(FingerLetter(name)), name, {"explore", {{"finger", name}}}});
+            {std::tolower(letters[i]), names[i], {"explore", {{"finger", names[i]}}}});
       Ask("explore:", choices);
       return {};
     }

@@ -69,11 +69,6 @@ const Series& DashboardModel::manipulability(const std::string& finger) const {
   return it == manipulability_.end() ? kNone : it->second;
 }
 
-char FingerLetter(const std::string& name) {
-  if (name.empty()) return '?';
-  return name[0] >= 'a' && name[0] <= 'z' ? static_cast<char>(name[0] - 'a' + 'A') : name[0];
-}
-
 char RoleLetter(const std::string& role) {
   return role == "hold" ? 'H' : role == "explore" ? 'E' : role == "move" ? 'M' : '-';
 }

@@ -68,8 +68,6 @@ class DashboardModel {
   int slips_ = 0;
 };
 
-/// The paper's letter of a finger: T thumb, F first, M middle, R ring, L little.
-char FingerLetter(const std::string& name);
 /// H hold, E explore, M move, - free.
 char RoleLetter(const std::string& role);
 

@@ -9,6 +9,7 @@
 
 #include "cli/print/print.h"
 #include "core/common/count_text.h"
+#include "core/common/finger_letters.h"
 
 namespace regrasp::cli {
 namespace {
@@ -195,6 +196,7 @@ void DrawFingers(Screen* screen, const Box& box, const DashboardModel& model) {
     largest_force = std::max(largest_force, Number(At(f, "force_n")));
     largest_phi = std::max(largest_phi, Number(At(At(quality, name.c_str()), "manipulability")));
   }
+  const std::vector<char> letters = FingerLetters(model.Fingers());
   for (int i = 0; i < std::min(static_cast<int>(fingers.size()), box.rows - 1); ++i) {
     const auto& [name, f] = fingers[static_cast<std::size_t>(i)];
     const Json& q = At(quality, name.c_str());
@@ -208,7 +210,7 @@ void DrawFingers(Screen* screen, const Box& box, const DashboardModel& model) {
       return FineBar(fraction, columns[column].width);
     };
     row_of(box.row + 1 + i,
-           {{fmt::format("{} {}", FingerLetter(name), name), CurveInk(i)},
+           {{fmt::format("{} {}", letters[static_cast<std::size_t>(i)], name), CurveInk(i)},
             {fmt::format("{} {}", RoleLetter(role), role), RoleInk(role)},
             {touches ? "● touch" : "○ none", touches ? Ink::kGood : Ink::kDim},
             {fmt::format("{:>4} N", Fixed(At(f, "force_n"), 2)), Ink::kPlain},

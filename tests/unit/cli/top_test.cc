@@ -267,6 +267,22 @@ TEST(TopKeys, LettersBecomeRequests) {
   EXPECT_TRUE(keys.quit());
 }
 
+// Of fingers that begin alike each has a key of its own.
+TEST(TopKeys, EachFingerOfAnyHandCanExplore) {
+  Json fingers = Json::object();
+  for (const char* name : {"finger1", "finger2", "finger3", "thumb"})
+    fingers[name] = {{"role", "hold"}, {"in_contact", true}, {"force_n", 1}};
+  DashboardModel model = Model();
+  model.Add("contacts", {{"time_s", 3}, {"fingers", fingers}});
+  for (const auto& [key, name] : {std::pair{'2', "finger2"}, {'3', "finger3"}, {'t', "thumb"}}) {
+    Keys keys;
+    EXPECT_FALSE(keys.Press('e', model));
+    const auto explore = keys.Press(key, model);
+    ASSERT_TRUE(explore) << key;
+    EXPECT_EQ(explore->params, (Json{{"finger", name}}));
+  }
+}
+
 TEST(TopKeys, ResetNeedsAYes) {
   Keys keys;
   const DashboardModel model = Model();
