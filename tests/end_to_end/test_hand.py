@@ -9,7 +9,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import HANG_S, REGRASP, Case, environment
+from harness import HANG_S, REGRASP, SOURCE, Case, environment
 
 INERTIAL = '<inertial><origin xyz="0 0 {0}"/><mass value="{1}"/><inertia ixx="{2}" ixy="0" ixz="0" iyy="{2}" iyz="0" izz="{2}"/></inertial>'
 JOINT = """<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0 0 {yaw}"/>
