@@ -24,8 +24,7 @@ CliError ForPeople(const CliError& error, const std::string& words) {
                            : words.starts_with("param ") ? "regrasp param list"
                                                          : "regrasp help " + words;
   const std::string cause = error.what();
-  const bool whole = error.hint.empty() || error.is_list;
-  return error.With(whole ? cause : cause + "; " + error.hint, next);
+  return error.With(error.is_list ? cause : WithHint(cause, error.hint), next);
 }
 
 /// `hint` for somebody who named the socket: its commands name it, too, but for `help`.
@@ -87,7 +86,7 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
       code = invocation.command->run(context, invocation);
     } catch (CliError& error) {
       context.out().Flush();  // what was answered before the failure
-      if (error.code == kUsage && error.hint.empty()) {
+      if (error.code == kUsage && error.hint.empty() && error.rpc_code == 0) {
         error.hint = "regrasp help " + invocation.command->words;
       }
       const std::string gone = "the current directory has gone", cause = error.what();

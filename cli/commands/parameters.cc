@@ -257,7 +257,7 @@ CliError Placed(const CliError& error, const std::string& file, const ParameterF
   if (error.rpc_errors.empty()) return error.With(placed(error), error.hint);
   ProblemList problems;
   for (const CliError& one : error.rpc_errors)
-    problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
+    problems.Add(line_of(one), WithHint(placed(one), one.hint));
   problems.AddUnkept(error.rpc_more);
   CliError all = error.With(problems.Text(), "regrasp param list");
   all.is_list = problems.count() > 1;

@@ -129,6 +129,7 @@ class Session(DaemonCase):
         self.refused(2, "call", "status", '{"x": 1}')
         # What to try is a command; what the daemon hints at is part of the cause.
         for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.001 ... 1", "regrasp param list"),
+                                          (["param", "set", "gait.mode", "zzz"], "gait.mode = 'zzz': expected exploring or returning", "regrasp param list"),
                                           (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
                                           (["reset", "--object", "eg"], "did you mean 'egg'?", "regrasp help reset"),
                                           (["job", "show", "99"], "no job 99", "regrasp job list"),
@@ -136,7 +137,7 @@ class Session(DaemonCase):
             with self.subTest(words):
                 done = self.regrasp(*words)
                 cause, hint = done.stderr.splitlines()
-                self.assertIn(part, cause)
+                self.assertTrue(cause.endswith(part), cause)
                 self.assertEqual(hint, f"  try: {next_command}")
         self.assertEqual(self.json("status")["state"], "idle")
 
