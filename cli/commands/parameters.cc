@@ -14,8 +14,8 @@
 #include "cli/client/context.h"
 #include "cli/grammar/units.h"
 #include "core/common/count_text.h"
-#include "core/files/draft.h"
 #include "core/files/names.h"
+#include "core/files/output_file.h"
 #include "core/files/problem_list.h"
 #include "core/files/toml_text.h"
 
@@ -150,7 +150,7 @@ ExitCode Save(Context& context, const Invocation& invocation) {
     return kOk;
   }
   try {
-    RefuseMissingDirectory(file);
+    CheckWritable(file, Draft::Existing::kReplace);
     WriteWhole(file, text, Draft::Existing::kReplace);
   } catch (const std::runtime_error& error) {
     throw CliError(kIo, error.what(), "regrasp param save OTHER_FILE");
@@ -199,15 +199,18 @@ void ReadTable(const toml::table& table, const std::string& prefix, ParameterFil
   }
 }
 
-/// Throws CliError(kUsage) for what of `all` stands outside of [parameters].
-void RefuseOutside(const std::string& file, const ParameterFile& all) {
+/// Throws CliError(kUsage) for what of `root` stands outside of its table [parameters], however the
+/// key is written.
+void RefuseOutside(const std::string& file, toml::table root) {
+  root.erase("parameters");
+  ParameterFile outside;
+  ReadTable(root, "", &outside);
   ProblemList problems;
-  for (const auto& [name, line] : all.lines)
-    if (!name.starts_with("parameters."))
-      problems.Add(static_cast<int>(line),
-                   fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that "
-                               "table is a parameter",
-                               file, line, ShownText(name)));
+  for (const auto& [name, line] : outside.lines)
+    problems.Add(static_cast<int>(line),
+                 fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that "
+                             "table is a parameter",
+                             file, line, ShownText(name)));
   if (problems.empty()) return;
   CliError refusal(kUsage, problems.Text(), "regrasp param list");
   refusal.is_list = problems.count() > 1;
@@ -231,9 +234,7 @@ ParameterFile ReadFile(const std::string& file) {
     if (!table)
       throw CliError(kUsage, fmt::format("{}: no table [parameters]", file),
                      "regrasp param save OTHER_FILE, to see one");
-    ParameterFile all;
-    ReadTable(root, "", &all);
-    RefuseOutside(file, all);
+    RefuseOutside(file, root);
     ReadTable(*table, "", &read);
   } catch (const toml::parse_error& error) {
     throw CliError(kUsage,
