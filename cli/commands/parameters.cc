@@ -186,9 +186,12 @@ Json ToWire(const toml::node& node) {
   return list;
 }
 
-/// Names may be quoted, dotted or in sub-tables, as in the configuration file.
-void ReadTable(const toml::table& table, const std::string& prefix, ParameterFile* read) {
+/// Names may be quoted, dotted or in sub-tables, as in the configuration file. `but`: this key is
+/// passed over.
+void ReadTable(const toml::table& table, const std::string& prefix, ParameterFile* read,
+               std::string_view but = "") {
   for (const auto& [key, node] : table) {
+    if (!but.empty() && key.str() == but) continue;
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table()) {
       ReadTable(*inner, name + ".", read);
@@ -201,10 +204,9 @@ void ReadTable(const toml::table& table, const std::string& prefix, ParameterFil
 
 /// Throws CliError(kUsage) for what of `root` stands outside of its table [parameters], however the
 /// key is written.
-void RefuseOutside(const std::string& file, toml::table root) {
-  root.erase("parameters");
+void RefuseOutside(const std::string& file, const toml::table& root) {
   ParameterFile outside;
-  ReadTable(root, "", &outside);
+  ReadTable(root, "", &outside, "parameters");
   ProblemList problems;
   for (const auto& [name, line] : outside.lines)
     problems.Add(static_cast<int>(line),
