@@ -132,7 +132,7 @@ class Session(DaemonCase):
                                           (["param", "set", "gait.mode", "zzz"], "gait.mode = 'zzz': expected exploring or returning", "regrasp param list"),
                                           (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
                                           (["reset", "--object", "eg"], "did you mean 'egg'?", "regrasp help reset"),
-                                          (["job", "show", "99"], "no job 99", "regrasp job list"),
+                                          (["job", "show", "99"], "no job 99; call job.list for the last jobs", "regrasp job list"),
                                           (["call", "status", '{"x": 1}'], "status takes no parameters", "regrasp help call")]:
             with self.subTest(words):
                 done = self.regrasp(*words)
