@@ -330,7 +330,8 @@ Options Parse(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc > 1 && argv[1] == std::string("--help")) return std::fputs(kHelp, stdout) < 0 ? 74 : 0;
+    for (int i = 1; i < argc; ++i)
+      if (argv[i] == std::string("--help")) return std::fputs(kHelp, stdout) < 0 ? 74 : 0;
     const Options o = Parse(argc, argv);
     Print(o, RunAll(o));
     return 0;

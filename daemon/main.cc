@@ -160,9 +160,7 @@ std::string Unexpected(const CLI::App& app) {
   const std::string argument = flag != extras.end() ? *flag : extras.front();
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
-  const std::string_view near = NearestName(argument, names);
-  return fmt::format("unknown argument {}{}", argument,
-                     near.empty() ? "" : fmt::format("; did you mean {}?", near));
+  return fmt::format("unknown argument {}{}", argument, OrNearest(argument, names));
 }
 
 constexpr std::size_t kMemoryReserve = 4 << 20;  // [bytes]: a frame, its answers, a picture's start

@@ -7,8 +7,10 @@
 #include <clocale>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "cli/client/config_file.h"
+#include "core/files/shell_word.h"
 
 namespace regrasp::cli {
 namespace {
@@ -70,10 +72,22 @@ Context::Context(const GlobalOptions& options)
            HasUtf8()) {}
 
 void Context::RefuseCsv(const Invocation& invocation) const {
+  if (!options_.csv) return;
   const std::string& words = invocation.command->words;
-  if (options_.csv)
-    throw CliError(kUsage, fmt::format("--csv: '{}' prints no table", words),
-                   "regrasp --json " + words);
+  std::string again = "regrasp --json " + words;
+  for (const Arg& arg : invocation.command->args) {
+    const auto sent = invocation.params.find(arg.key);
+    const bool flag = arg.kind == ArgKind::kFlag;
+    if (!arg.flags.empty() && invocation.Has(arg.key))
+      again += " " + arg.flags.substr(arg.flags.find("--"));
+    if (invocation.Has(arg.key) && !flag) {
+      std::istringstream values(invocation.Text(arg.key));  // a line for each
+      for (std::string value; std::getline(values, value);) again += " " + ShellWord(value);
+    } else if (arg.flags.empty() && sent != invocation.params.end()) {
+      again += " " + ShellWord(Plain(*sent));
+    }
+  }
+  throw CliError(kUsage, fmt::format("--csv: '{}' prints no table", words), again);
 }
 
 Client& Context::client() {

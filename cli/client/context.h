@@ -20,6 +20,11 @@ class Context {
   /// Seconds to wait for one answer.
   double timeout_s() const { return options_.timeout_s.value_or(10.0); }
 
+  /// What may come next, behind a line of an answer: "    (regrasp record stop)".
+  std::string Next(const std::string& command) const {
+    return "    (" + AtSocket(command, options_.socket) + ")";
+  }
+
   /// Throws CliError(kUsage) with --csv, for a command that has no table to print.
   void RefuseCsv(const Invocation& invocation) const;
 

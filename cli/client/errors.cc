@@ -5,13 +5,33 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string_view>
 
 #include "core/files/json_text.h"
 #include "core/files/names.h"
+#include "core/files/shell_word.h"
 
 namespace regrasp::cli {
 
 std::string JsonQuote(const std::string& text) { return JsonText(nlohmann::json(text)); }
+
+std::string AtSocket(const std::string& hint, const std::string& socket) {
+  constexpr std::string_view kProgram = "regrasp ";
+  if (socket.empty()) return hint;
+  std::string text;
+  for (std::size_t at = 0, begin = 0; begin < hint.size(); begin = at) {
+    const std::string_view rest = std::string_view(hint).substr(begin);
+    const bool command =
+        rest.starts_with(kProgram) &&
+        (begin == 0 || std::string_view(" (").find(hint[begin - 1]) != std::string_view::npos);
+    at = begin + (command ? kProgram.size() : 1);
+    text += hint.substr(begin, at - begin);
+    const std::string_view first = rest.substr(at - begin);
+    if (command && !first.starts_with("help") && !first.starts_with("-s "))
+      text += "-s " + ShellWord(socket) + " ";
+  }
+  return text;
+}
 
 namespace {
 

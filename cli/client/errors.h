@@ -44,6 +44,10 @@ class CliError : public std::runtime_error {
 /// {"error": {…}}, of a list with each by itself in `errors`.
 void PrintError(const CliError& error, bool json, bool color);
 
+/// `hint` for somebody who named the socket, "" where nobody has: its commands name it, too, but
+/// for `help`.
+std::string AtSocket(const std::string& hint, const std::string& socket);
+
 /// `text` as a JSON string literal, quotes included. Invalid UTF-8 bytes become U+FFFD.
 std::string JsonQuote(const std::string& text);
 

@@ -27,7 +27,8 @@ ExitCode List(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   const auto& list = At(answer, "checkpoints");
   context.PrintRows(answer, std::vector<Json>(list.begin(), list.end()), [&] {
-    if (list.empty()) return context.out().Line("no checkpoint    (regrasp checkpoint save NAME)");
+    if (list.empty())
+      return context.out().Line("no checkpoint" + context.Next("regrasp checkpoint save NAME"));
     Table table(
         {"name", ">time [s]", "state", "object", ">seed", ">commands", "state hash", "build"});
     for (const Json& row : list)

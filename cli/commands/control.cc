@@ -91,8 +91,8 @@ ExitCode Reset(Context& context, const Invocation& invocation) {
       context.out().Line("warning: " + Plain(warning));
     const std::string changed = ChangedText(At(answer, "changed_parameters"));
     if (!changed.empty())
-      context.out().Line(
-          fmt::format("changed parameters stay: {}    (regrasp param reset)", changed));
+      context.out().Line(fmt::format("changed parameters stay: {}{}", changed,
+                                     context.Next("regrasp param reset")));
   });
   return kOk;
 }
@@ -114,9 +114,9 @@ void PrintNoise(Output& out, const Json& noise) {
                         const char* unit) {
     if (At(noise, key).is_number() && At(noise, key) != 0.0) line(what, key, digits, scale, unit);
   };
-  more("taxels apart", "taxel_pitch_m", 1, 1e3, "mm");
+  more("taxels apart", "taxel_pitch_m", 2, 1e3, "mm");
   more("pose rate", "object_rate_hz", 0, 1, "Hz");
-  more("pose delay", "object_delay_frames", 0, 1, "poses");
+  if (At(noise, "object_rate_hz") != 0.0) more("pose delay", "object_delay_frames", 0, 1, "poses");
   more("position bias", "position_bias_m", 2, 1e3, "mm");
   more("force bias", "force_bias_n", 3, 1, "N");
   more("joint bias", "joint_bias_rad", 2, kDegrees, "deg");

@@ -24,25 +24,7 @@ CliError ForPeople(const CliError& error, const std::string& words) {
                            : words.starts_with("param ") ? "regrasp param list"
                                                          : "regrasp help " + words;
   const std::string cause = error.what();
-  const bool whole = error.hint.empty() || error.is_list;
-  return error.With(whole ? cause : cause + "; " + error.hint, next);
-}
-
-/// `hint` for somebody who named the socket: its commands name it, too, but for `help`.
-std::string AtSocket(const std::string& hint, const std::string& socket) {
-  constexpr std::string_view kProgram = "regrasp ";
-  if (socket.empty()) return hint;
-  std::string text;
-  for (std::size_t at = 0, begin = 0; begin < hint.size(); begin = at) {
-    const std::string_view rest = std::string_view(hint).substr(begin);
-    const bool command = rest.starts_with(kProgram) && (begin == 0 || hint[begin - 1] == ' ');
-    at = begin + (command ? kProgram.size() : 1);
-    text += hint.substr(begin, at - begin);
-    const std::string_view first = rest.substr(at - begin);
-    if (command && !first.starts_with("help") && !first.starts_with("-s "))
-      text += "-s " + ShellWord(socket) + " ";
-  }
-  return text;
+  return error.With(error.is_list ? cause : WithHint(cause, error.hint), next);
 }
 
 bool DirectoryHasGone() {
@@ -67,9 +49,7 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
   for (const auto& word : words) argv.push_back(word.c_str());
   const int argc = static_cast<int>(argv.size());
   const auto fail = [&](const CliError& error) {
-    const bool named = options.socket != defaults.socket;
-    PrintError(error.With(where + error.what(),
-                          AtSocket(error.hint, named ? options.socket : std::string())),
+    PrintError(error.With(where + error.what(), AtSocket(error.hint, options.socket)),
                defaults.json || WantsJson(argc, argv.data()),
                WantsColor(options.color, STDERR_FILENO));
     return error.code;
@@ -87,7 +67,7 @@ ExitCode Execute(const std::vector<std::string>& words, const GlobalOptions& def
       code = invocation.command->run(context, invocation);
     } catch (CliError& error) {
       context.out().Flush();  // what was answered before the failure
-      if (error.code == kUsage && error.hint.empty()) {
+      if (error.code == kUsage && error.hint.empty() && error.rpc_code == 0) {
         error.hint = "regrasp help " + invocation.command->words;
       }
       const std::string gone = "the current directory has gone", cause = error.what();

@@ -58,12 +58,12 @@ ExitCode Status(Context& context, const Invocation& invocation) {
     line("noise", Plain(noise.is_object() ? At(noise, "preset") : noise));
     line("job", JobSummary(At(s, "job")));
     const std::string changed = ChangedText(At(s, "changed_parameters"));
-    if (!changed.empty()) line("changed", changed + "    (regrasp param list --changed)");
+    if (!changed.empty()) line("changed", changed + context.Next("regrasp param list --changed"));
     if (At(s, "recording").is_string())
-      line("recording", Plain(At(s, "recording")) + "    (regrasp record stop)");
+      line("recording", Plain(At(s, "recording")) + context.Next("regrasp record stop"));
     const Json& incident = At(s, "incident");
     if (incident.is_object() && (state == "dropped" || state == "faulted"))
-      line("incident", Plain(At(incident, "record")) + "    (regrasp plot incident)");
+      line("incident", Plain(At(incident, "record")) + context.Next("regrasp plot incident"));
     line("daemon",
          fmt::format("regraspd {} on {}, {}", Plain(At(s, "version")), context.client().path(),
                      CountText(Plain(At(s, "clients")), "client")));

@@ -125,7 +125,8 @@ ExitCode JobExit(const Json& record) {
   return kOk;
 }
 
-void PrintJob(Output& out, const Json& record) {
+void PrintJob(Context& context, const Json& record) {
+  Output& out = context.out();
   const std::string state = record.value("state", "");
   const bool ended = state != "queued" && state != "running";
   const bool good = JobExit(record) == kOk;
@@ -148,7 +149,8 @@ void PrintJob(Output& out, const Json& record) {
   if (At(record, "error").is_string()) out.Line("  error      " + Plain(At(record, "error")));
   if (const Json& incident = At(record, "incident"); incident.is_object()) {
     out.Add(Wrap("  cause      " + Plain(At(incident, "cause")), 13));
-    out.Line("  incident   " + Plain(At(incident, "record")) + "    (regrasp plot incident)");
+    out.Line("  incident   " + Plain(At(incident, "record")) +
+             context.Next("regrasp plot incident"));
   }
   if (ended && record.value("method", "") == "explore" && state == "done")
     PrintExplore(out, record);
@@ -204,14 +206,14 @@ ExitCode StartJob(Context& context, const Invocation& invocation) {
     fmt::print(stderr, "regrasp: note: {}\n", Plain(difference));
   if (!wait) {
     context.Print(answer, [&] {
-      context.out().Line(fmt::format("job {}: {} started    (regrasp job wait {})", id,
-                                     invocation.command->words, id));
+      context.out().Line(fmt::format("job {}: {} started{}", id, invocation.command->words,
+                                     context.Next(fmt::format("regrasp job wait {}", id))));
     });
     return kOk;
   }
   const bool step = invocation.command->words == "step";
   const Json record = WaitForJob(context, id, step ? Standstill::kWait : Standstill::kRefuse);
-  context.Print(record, [&] { PrintJob(context.out(), record); });
+  context.Print(record, [&] { PrintJob(context, record); });
   return JobExit(record);
 }
 
@@ -260,13 +262,13 @@ ExitCode JobList(Context& context, const Invocation& invocation) {
 
 ExitCode JobShow(Context& context, const Invocation& invocation) {
   const Json record = context.Call(invocation);
-  context.Print(record, [&] { PrintJob(context.out(), record); });
+  context.Print(record, [&] { PrintJob(context, record); });
   return kOk;
 }
 
 ExitCode JobWait(Context& context, const Invocation& invocation) {
   const Json record = WaitForJob(context, invocation.params.at("id"));
-  context.Print(record, [&] { PrintJob(context.out(), record); });
+  context.Print(record, [&] { PrintJob(context, record); });
   return JobExit(record);
 }
 

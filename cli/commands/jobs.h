@@ -25,7 +25,7 @@ ExitCode JobExit(const Json& record);
 std::string JobSummary(const Json& job);
 
 /// The record, for people: one sentence, then what it measured.
-void PrintJob(Output& out, const Json& record);
+void PrintJob(Context& context, const Json& record);
 
 /// Sends the method of `invocation`, prints the job it started or, with --wait, its record.
 ExitCode StartJob(Context& context, const Invocation& invocation);

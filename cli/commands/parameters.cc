@@ -14,8 +14,8 @@
 #include "cli/client/context.h"
 #include "cli/grammar/units.h"
 #include "core/common/count_text.h"
-#include "core/files/draft.h"
 #include "core/files/names.h"
+#include "core/files/output_file.h"
 #include "core/files/problem_list.h"
 #include "core/files/toml_text.h"
 
@@ -150,7 +150,7 @@ ExitCode Save(Context& context, const Invocation& invocation) {
     return kOk;
   }
   try {
-    RefuseMissingDirectory(file);
+    CheckWritable(file, Draft::Existing::kReplace);
     WriteWhole(file, text, Draft::Existing::kReplace);
   } catch (const std::runtime_error& error) {
     throw CliError(kIo, error.what(), "regrasp param save OTHER_FILE");
@@ -186,9 +186,12 @@ Json ToWire(const toml::node& node) {
   return list;
 }
 
-/// Names may be quoted, dotted or in sub-tables, as in the configuration file.
-void ReadTable(const toml::table& table, const std::string& prefix, ParameterFile* read) {
+/// Names may be quoted, dotted or in sub-tables, as in the configuration file. `but`: this key is
+/// passed over.
+void ReadTable(const toml::table& table, const std::string& prefix, ParameterFile* read,
+               std::string_view but = "") {
   for (const auto& [key, node] : table) {
+    if (!but.empty() && key.str() == but) continue;
     const std::string name = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table()) {
       ReadTable(*inner, name + ".", read);
@@ -199,15 +202,17 @@ void ReadTable(const toml::table& table, const std::string& prefix, ParameterFil
   }
 }
 
-/// Throws CliError(kUsage) for what of `all` stands outside of [parameters].
-void RefuseOutside(const std::string& file, const ParameterFile& all) {
+/// Throws CliError(kUsage) for what of `root` stands outside of its table [parameters], however the
+/// key is written.
+void RefuseOutside(const std::string& file, const toml::table& root) {
+  ParameterFile outside;
+  ReadTable(root, "", &outside, "parameters");
   ProblemList problems;
-  for (const auto& [name, line] : all.lines)
-    if (!name.starts_with("parameters."))
-      problems.Add(static_cast<int>(line),
-                   fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that "
-                               "table is a parameter",
-                               file, line, ShownText(name)));
+  for (const auto& [name, line] : outside.lines)
+    problems.Add(static_cast<int>(line),
+                 fmt::format("{}:{}: {}: is outside of [parameters]; only what stands in that "
+                             "table is a parameter",
+                             file, line, ShownText(name)));
   if (problems.empty()) return;
   CliError refusal(kUsage, problems.Text(), "regrasp param list");
   refusal.is_list = problems.count() > 1;
@@ -231,9 +236,7 @@ ParameterFile ReadFile(const std::string& file) {
     if (!table)
       throw CliError(kUsage, fmt::format("{}: no table [parameters]", file),
                      "regrasp param save OTHER_FILE, to see one");
-    ParameterFile all;
-    ReadTable(root, "", &all);
-    RefuseOutside(file, all);
+    RefuseOutside(file, root);
     ReadTable(*table, "", &read);
   } catch (const toml::parse_error& error) {
     throw CliError(kUsage,
@@ -257,7 +260,7 @@ CliError Placed(const CliError& error, const std::string& file, const ParameterF
   if (error.rpc_errors.empty()) return error.With(placed(error), error.hint);
   ProblemList problems;
   for (const CliError& one : error.rpc_errors)
-    problems.Add(line_of(one), one.hint.empty() ? placed(one) : placed(one) + "; " + one.hint);
+    problems.Add(line_of(one), WithHint(placed(one), one.hint));
   problems.AddUnkept(error.rpc_more);
   CliError all = error.With(problems.Text(), "regrasp param list");
   all.is_list = problems.count() > 1;

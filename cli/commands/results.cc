@@ -25,17 +25,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Before anything is drawn.
+void CheckTarget(const fs::path& target, const std::string& next) {
+  try {
+    CheckWritable(target, Draft::Existing::kReplace);
+  } catch (const WriteError& e) {
+    throw CliError(kIo, e.what(), next);
+  }
+}
+
 /// The user named the target: what is there is replaced, at once and whole.
 void Copy(const fs::path& picture, const fs::path& target, const std::string& next) {
   constexpr std::uint64_t kMaxPicture = 256u << 20;  // [bytes]
   std::error_code ignored;
   if (fs::equivalent(picture, target, ignored)) return;
   try {
-    CheckWritable(target, Draft::Existing::kReplace);
-    RefuseMissingDirectory(target);
     WriteWhole(target, ReadRegularFile(picture, kMaxPicture), Draft::Existing::kReplace);
-  } catch (const WriteError& e) {
-    throw CliError(kIo, e.what(), next);
   } catch (const std::exception& e) {
     throw CliError(
         kIo, fmt::format("cannot copy {} to {}: {}", picture.string(), target.string(), e.what()),
@@ -65,6 +70,7 @@ std::string CheckedSuffix(const std::string& output, const std::string& name) {
 
 /// Of run files: no daemon is asked.
 ExitCode PlotRuns(Context& context, const Invocation& invocation) {
+  context.RefuseCsv(invocation);
   const std::string name = Plain(invocation.params["name"]);
   std::vector<std::string> words = {FindHelper("regrasp-film"), "plot", "--name", name};
   std::istringstream runs(invocation.Text("run"));
@@ -84,6 +90,9 @@ ExitCode PlotRuns(Context& context, const Invocation& invocation) {
   words.insert(words.end(), {"--output", out});
   if (context.out().format() == Format::kJson) words.push_back("--json");
   if (context.options().quiet) words.push_back("--quiet");
+  // The hints of the helper name it.
+  if (const std::string& socket = context.options().socket; !socket.empty())
+    words.insert(words.end(), {"--socket", socket});
   const ExitCode code = RunHelper(words, out);
   // Of a damaged file the picture is there, too.
   if ((code == kOk || code == kFailed) && invocation.Has("show"))
@@ -136,6 +145,11 @@ ExitCode Plot(Context& context, const Invocation& typed) {
       throw CliError(kUsage, "-o - is for pictures of the daemon", "regrasp plot NAME RUN -o FILE");
     return PlotRuns(context, invocation);
   }
+  std::error_code ignored;
+  const std::string other = "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE";
+  fs::path target = invocation.Text("output");
+  if (fs::is_directory(target, ignored)) target /= "picture";  // a name is found for it
+  if (invocation.Has("output") && !to_stdout) CheckTarget(target, other);
   Invocation request = invocation;
   if (!suffix.empty()) {
     request.params["file"] = Plain(invocation.params["name"]) + suffix;
@@ -148,9 +162,9 @@ ExitCode Plot(Context& context, const Invocation& typed) {
     return kOk;
   }
   if (invocation.Has("output")) {
-    fs::path target = invocation.Text("output");
-    if (fs::is_directory(target)) target /= Plain(At(answer, "file"));
-    Copy(file, target, "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE");
+    target = invocation.Text("output");
+    if (fs::is_directory(target, ignored)) target /= Plain(At(answer, "file"));
+    Copy(file, target, other);
     file = target;
     answer["path"] = fs::absolute(target).string();
     answer["file"] = target.filename().string();

@@ -50,7 +50,8 @@ ExitCode RecordList(Context& context, const Invocation& invocation) {
   const Json answer = context.Call(invocation);
   const auto& list = At(answer, "recordings");
   context.PrintRows(answer, std::vector<Json>(list.begin(), list.end()), [&] {
-    if (list.empty()) return context.out().Line("no run file    (regrasp record start)");
+    if (list.empty())
+      return context.out().Line("no run file" + context.Next("regrasp record start"));
     Table table({"file", ">size [MB]", ""});
     for (const Json& row : list)
       table.Row({Plain(At(row, "file")), Fixed(At(row, "bytes"), 1, 1e-6),
@@ -79,6 +80,9 @@ ExitCode Run(Context& context, const Invocation& invocation,
   const std::string output = invocation.Text("output", defaults.empty() ? "" : defaults.back());
   if (context.out().format() == Format::kJson) arguments.push_back("--json");
   if (context.options().quiet) arguments.push_back("--quiet");
+  // The hints of the helper name it.
+  if (const std::string& socket = context.options().socket; !socket.empty())
+    arguments.insert(arguments.end(), {"--socket", socket});
   return RunHelper(arguments, output);
 }
 

@@ -7,8 +7,8 @@
 
 #include "cli/client/context.h"
 #include "cli/commands/surface_file.h"
-#include "core/files/draft.h"
 #include "core/files/lower_suffix.h"
+#include "core/files/output_file.h"
 
 namespace regrasp::cli {
 namespace {
@@ -38,11 +38,17 @@ ExitCode Shape(Context& context, const Invocation& invocation) {
                    "regrasp shape -o felt.ply");
   Invocation request = invocation;
   if (invocation.Has("output")) request.params["mesh"] = true;
+  if (invocation.Has("output")) {
+    try {
+      CheckWritable(target, Draft::Existing::kReplace);
+    } catch (const WriteError& e) {
+      throw CliError(kIo, e.what(), "regrasp shape -o OTHER_FILE");
+    }
+  }
   Json answer = context.Call(request);
   if (invocation.Has("output")) {
     const Json& mesh = At(answer, "mesh");
     try {
-      RefuseMissingDirectory(target);
       WriteWhole(target, suffix == ".ply" ? PlyText(mesh) : StlText(mesh),
                  Draft::Existing::kReplace);
     } catch (const std::exception& e) {

@@ -42,6 +42,7 @@ void TellFailure(const Options& options, const std::string& cause, const std::st
 /// What may help against what a file is refused for: the flags that the refusal names.
 std::string NextFor(const ModelError& error) {
   const std::string cause = error.what();
+  if (cause.find("$REGRASP_MODELS_DIR is") != std::string::npos) return "unset REGRASP_MODELS_DIR";
   if (error.names_no_model) return "give the path of a .urdf or .toml file";
   std::string flags;
   for (const char* flag : {" --fill-missing-meshes", " --inertia-from-shape"})

@@ -18,6 +18,7 @@
 
 #include "core/files/json_text.h"
 #include "core/files/names.h"
+#include "core/files/output_file.h"
 #include "core/hand/model_path.h"
 #include "core/hand/object_loader.h"
 #include "core/hand/solid.h"
@@ -166,6 +167,8 @@ std::vector<TableRow> Table(const Json& json) {
 }
 
 ExitCode Show(const std::string& name, const Options& given) {
+  if (const auto picture = given.find("--output"); picture != given.end())
+    CheckWritable(picture->second, Draft::Existing::kReplace);
   LoadOptions options;
   options.force = given.contains("--force");
   options.inertia_from_shape = given.contains("--inertia-from-shape");

@@ -59,6 +59,12 @@ McapSummary ReadStretch(const std::string& path, const Stretch& stretch, bool wh
         if (chunk.end >= begin && chunk.start <= end) return true;
         return std::ranges::any_of(chunk.topics, IsJournal);
       });
+  // Chunks of the journal are read wherever they lie; what is lost of them counts where some of it
+  // would have been written.
+  std::erase_if(summary.lost, [&](const McapLoss& loss) {
+    const bool known = loss.end != 0;
+    return known && (loss.start > end || (!whole_journal && loss.end < begin));
+  });
   summary.messages = count;
   return summary;
 }

@@ -179,11 +179,6 @@ PlotResult PlotRuns(const std::vector<std::string>& paths, const std::string& na
                                name, paths.size()),
                    PlotCommand(name, paths.front()));
   CheckWritable(out, Draft::Existing::kReplace);
-  try {
-    RefuseMissingDirectory(out);
-  } catch (const std::runtime_error& error) {
-    throw WriteError(error.what());
-  }
   std::vector<Pictured> runs;
   if (comparison)
     runs = Compared(paths);

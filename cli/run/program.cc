@@ -29,9 +29,12 @@ void TellOnce(const std::vector<std::string>& differences, Json* told) {
   }
 }
 
-/// `message`, `hint`: as they may be shown.
-int TellFailure(const Command& command, const std::string& message, const std::string& hint,
+/// `message`, `next`: as they may be shown.
+int TellFailure(const Command& command, const std::string& message, const std::string& next,
                 ExitCode code) {
+  const auto socket = command.options.find("--socket");
+  const std::string hint =
+      socket == command.options.end() ? next : cli::AtSocket(next, ShownText(socket->second));
   if (command.json())
     fmt::print(stderr, "{}\n",
                Json{{"error",

@@ -123,13 +123,17 @@ ExitCode Converse(Context& context) {
       Execute(words, options);
       if (MustEnd()) return kInterrupted;
     } catch (const CliError& error) {
-      PrintError(error, options.json, WantsColor(options.color, STDERR_FILENO));
+      PrintError(error.With(error.what(), AtSocket(error.hint, options.socket)), options.json,
+                 WantsColor(options.color, STDERR_FILENO));
     }
   }
 }
 
 /// Runs the lines of `in`, `name` for people. The exit code of the first failure, or kOk.
 ExitCode RunScript(Context& context, std::istream& in, const std::string& name, bool keep_going) {
+  const auto at_socket = [&](const std::string& hint) {
+    return AtSocket(hint, context.options().socket);
+  };
   ExitCode first = kOk;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
@@ -141,7 +145,7 @@ ExitCode RunScript(Context& context, std::istream& in, const std::string& name, 
       if (words.size() == 1 && (words[0] == "exit" || words[0] == "quit")) return first;
       code = Execute(words, context.options(), where);
     } catch (const CliError& error) {
-      PrintError({error.code, where + error.what(), error.hint}, context.options().json,
+      PrintError({error.code, where + error.what(), at_socket(error.hint)}, context.options().json,
                  WantsColor(context.options().color, STDERR_FILENO));
       code = error.code;
     }
@@ -154,7 +158,7 @@ ExitCode RunScript(Context& context, std::istream& in, const std::string& name, 
         PrintError({code,
                     fmt::format("{}stopped: '{}' ended with exit code {}", where, line,
                                 static_cast<int>(code)),
-                    "regrasp shell --keep-going, to run the rest all the same"},
+                    at_socket("regrasp shell --keep-going, to run the rest all the same")},
                    context.options().json, WantsColor(context.options().color, STDERR_FILENO));
       }
       return first;

@@ -38,7 +38,13 @@ void CheckWritable(const std::string& target, Draft::Existing existing) {
   struct stat info {};
   if (existing == Draft::Existing::kKeep && ::lstat(target.c_str(), &info) == 0)
     throw WriteError(target + " exists; give another name");
-  const std::string cause = WhyNoOutput(fs::path(target).parent_path());
+  std::string cause;
+  try {
+    if (existing == Draft::Existing::kReplace) RefuseMissingDirectory(target);
+    cause = WhyNoOutput(fs::path(target).parent_path());
+  } catch (const std::runtime_error& error) {
+    cause = error.what();
+  }
   if (!cause.empty()) throw WriteError("cannot write " + target + ": " + cause);
 }
 

@@ -17,7 +17,7 @@ class WriteError : public std::runtime_error {
 };
 
 /// Before long work: throws WriteError where `target` has no name, where nothing can be made in its
-/// directory (WhyNoOutput), and with kKeep where it exists.
+/// directory (WhyNoOutput); with kKeep where it exists; with kReplace where its directory does not.
 void CheckWritable(const std::string& target, Draft::Existing existing);
 
 /// Why nothing can be made in `directory` (empty: the current one), or above it where it is not

@@ -100,7 +100,7 @@ std::vector<Shape> HandShapes::Read(const UrdfLink& in, const Isometry3d& X_LG, 
         shape.half_extents = geometry.size / 2;
         break;
       case UrdfGeometry::Kind::kMesh:
-        if (const auto fitted = OfMesh(in, geometry, X, fingertip)) shapes.push_back(*fitted);
+        if (const auto fitted = OfMesh(in, geometry, X, role)) shapes.push_back(*fitted);
         continue;
     }
     shapes.push_back(shape);
@@ -197,7 +197,7 @@ const TriangleMesh* HandShapes::Mesh(const fs::path& file, const Vector3d& scale
 }
 
 std::optional<Shape> HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& geometry,
-                                        const Isometry3d& X, bool fingertip) {
+                                        const Isometry3d& X, LinkRole role) {
   const fs::path file = Find(in, geometry);
   if (file.empty()) {
     if (!options_.fill_missing_meshes) return {};
@@ -216,11 +216,11 @@ std::optional<Shape> HandShapes::OfMesh(const UrdfLink& in, const UrdfGeometry& 
       v = X * v;
       box.extend(v);
     }
-    if (const double size = box.sizes().maxCoeff(); size > kLargestLink)
+    const double most = role == LinkRole::kStand ? kLargestStand : kLargestLink;
+    if (const double size = box.sizes().maxCoeff(); size > most)
       throw ModelError(fmt::format("{}: the mesh is {:.4g} m long; allowed are at most {:g} m{}",
-                                   file.string(), size, kLargestLink,
-                                   UnitHint(size, 1e-3, kLargestLink)));
-    return Fitted(in, geometry, posed, file.string(), fingertip);
+                                   file.string(), size, most, UnitHint(size, 1e-3, most)));
+    return Fitted(in, geometry, posed, file.string(), role == LinkRole::kFingertip);
   } catch (const ModelError& error) {
     problems_->Add(geometry.line, "{}: {}", LinkElement(in.name), error.what());
     return {};

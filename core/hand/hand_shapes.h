@@ -40,7 +40,7 @@ class HandShapes {
   bool CheckSize(const UrdfLink& in, const UrdfCollision& collision, double most);
   /// Nothing where the file cannot be read, which is a problem.
   std::optional<Shape> OfMesh(const UrdfLink& in, const UrdfGeometry& geometry, const Isometry3d& X,
-                              bool fingertip);
+                              LinkRole role);
   Shape Fitted(const UrdfLink& in, const UrdfGeometry& geometry, const TriangleMesh& posed,
                const std::string& name, bool fingertip);
   /// The file named, or with fill_missing_meshes one of its name in a directory beside it; empty

@@ -50,7 +50,8 @@ class HandTree {
   /// The joints that move a link, from the root on.
   std::vector<int> JointsTo(int link) const;
 
-  /// The link that carries the first joint of every finger: of the names that the layout has.
+  /// The last link above the first movable joints of all fingers; the root where no finger of the
+  /// layout is found.
   int Palm() const;
   /// Whether `link` is `above`, or comes after it from the root on.
   bool IsBelow(int link, int above) const;

@@ -62,7 +62,7 @@ std::vector<fs::path> ModelSearchPath(const std::string& models_dir) {
   }
   if (const char* named = std::getenv("REGRASP_MODELS_DIR"); named != nullptr && *named != '\0') {
     if (!IsDirectory(named))
-      throw ModelError(fmt::format("{}: $REGRASP_MODELS_DIR is not a directory", named));
+      throw ModelError::NoModel(fmt::format("{}: $REGRASP_MODELS_DIR is not a directory", named));
     add(named);
   }
   // Programs are installed in bin/ and libexec/regrasp/, both beside share/.

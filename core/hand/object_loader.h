@@ -24,9 +24,9 @@ struct ObjectFacts {
 /// sphere, capsule or box alone, in the link's axes about the centre of mass, stays what it is;
 /// anything else becomes one mesh (round pieces by facets, primitive_mesh.h), and where pieces
 /// overlap the body is their union. The origin is moved to the centre of mass, and the link
-/// turned by `R_OL` first. A body that cannot
-/// be is refused with the flag that mends it; Adds to
-/// `report` and `facts` where given. Throws ModelError with all that is wrong, each with its line.
+/// turned by `R_OL` first. A body that cannot be is refused, and the flag that takes it all the
+/// same is named; inertia_as_told takes its inertia as the file has it. Adds to `report` and
+/// `facts` where given. Throws ModelError with all that is wrong, each with its line.
 ObjectModel LoadObjectUrdf(const std::filesystem::path& urdf_file, const LoadOptions& options = {},
                            ModelReport* report = nullptr, ObjectFacts* facts = nullptr,
                            const Matrix3d& R_OL = Matrix3d::Identity());

@@ -41,6 +41,7 @@ class Problems {
   std::string file_;
   ModelReport* report_;
   ProblemList list_;
+  bool names_no_model_ = false;  ///< all that is here is one such error
 };
 
 }  // namespace regrasp

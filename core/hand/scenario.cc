@@ -188,8 +188,9 @@ HandFiles FindHandFiles(const std::string& hand, const std::vector<fs::path>& se
     if (!IsFile(toml_file)) throw ModelError::NoModel(fmt::format("{}: file not found", hand));
     const fs::path urdf = UrdfOf(TomlFile(toml_file), toml_file);
     if (!IsFile(urdf))
-      throw ModelError(fmt::format("{}: there is no {} beside it; urdf = \"FILE.urdf\" names one",
-                                   hand, urdf.filename().string()));
+      throw ModelError::NoModel(
+          fmt::format("{}: there is no {} beside it; urdf = \"FILE.urdf\" names one", hand,
+                      urdf.filename().string()));
     return {urdf, toml_file};
   }
   // A scenario of this name whose URDF stands elsewhere.

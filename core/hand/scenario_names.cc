@@ -17,13 +17,11 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// "no joint "a"; nearest is "b"; joints are ...".
+/// "there is no joint "a"; did you mean 'b'?; joints are ...".
 std::string NoSuch(const char* kind, const std::string& name, const Names& names) {
   constexpr std::size_t kMost = 64;  // bytes of a name that are shown
-  const std::string_view near = NearestName(name, names);
   return fmt::format("there is no {} \"{}\"{}; {}s are {}", kind, name.substr(0, kMost),
-                     near.empty() ? "" : fmt::format("; nearest is \"{}\"", near), kind,
-                     fmt::join(names, ", "));
+                     OrNearest(name, names), kind, fmt::join(names, ", "));
 }
 
 class NameCheck {

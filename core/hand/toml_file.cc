@@ -25,9 +25,8 @@ void TomlFile::CheckKeys(const toml::table& table, const std::vector<std::string
   for (const auto& [key, value] : table) {
     if (std::ranges::find(allowed, key.str()) != allowed.end()) continue;
     const std::string name(key.str().substr(0, 64));
-    const std::string_view near = NearestName(name, allowed);
-    Add(LineOf(key), "unknown key \"{}\"{}; allowed are {}", name,
-        near.empty() ? "" : fmt::format("; nearest is \"{}\"", near), fmt::join(allowed, ", "));
+    Add(LineOf(key), "unknown key \"{}\"{}; allowed are {}", name, OrNearest(name, allowed),
+        fmt::join(allowed, ", "));
   }
 }
 

@@ -69,6 +69,13 @@ ExitCode ExitCodeFor(int code) {
   return info ? info->exit_code : ExitCode::kProtocol;
 }
 
+std::string WithHint(const std::string& message, const std::string& hint) {
+  constexpr std::string_view kAllowed = "allowed: ";
+  const bool said =
+      hint.starts_with(kAllowed) && message.ends_with("expected " + hint.substr(kAllowed.size()));
+  return hint.empty() || said ? message : message + "; " + hint;
+}
+
 std::span<const ExitInfo> ExitTable() { return kExits; }
 
 }  // namespace regrasp

@@ -4,6 +4,7 @@
 /// ours.
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace regrasp {
@@ -60,6 +61,10 @@ const ErrorInfo* FindError(int code);
 
 /// What `regrasp` exits with for a code read from the wire; unknown codes are a protocol problem.
 ExitCode ExitCodeFor(int code);
+
+/// "MESSAGE; HINT" for one line; the message alone where it has said what is allowed ("expected X"
+/// and "allowed: X"), or without a hint.
+std::string WithHint(const std::string& message, const std::string& hint);
 
 struct ExitInfo {
   ExitCode code;

@@ -94,7 +94,6 @@ class Sensors {
       v("q", q);
     }
   };
-  /// From one sample to the next [s].
   void ReadFingertips(const WorldState& truth);
   void ReadObject(std::int64_t tick, const WorldState& truth);
 

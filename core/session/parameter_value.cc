@@ -51,7 +51,6 @@ bool IsQuotedNumber(const GivenValue& given) {
 [[noreturn]] void Refuse(const ParameterInfo& info, const GivenValue& given) {
   const std::string name(info.name);
   std::string message = name + " = " + Shown(given) + ": expected " + AllowedText(info);
-  const std::string whole = message;
   const bool scalar = info.type == ParameterType::kReal || info.type == ParameterType::kInteger;
   if (scalar && IsQuotedNumber(given))
     message = name + " is a number, and " + Shown(given) + " is text: leave out the quotes";
@@ -61,8 +60,7 @@ bool IsQuotedNumber(const GivenValue& given) {
               ", not " + Shown(given);
   if (info.type == ParameterType::kVector && !std::holds_alternative<double>(given))
     message = name + " is 3 numbers, not " + Shown(given);
-  const bool said = message == whole;
-  throw ParameterError(message, said ? "" : AllowedText(info));
+  throw ParameterError(message, AllowedText(info));
 }
 
 void CheckRange(const ParameterInfo& info, double value) {
@@ -85,8 +83,8 @@ double ReadWord(const ParameterInfo& info, const GivenValue& given) {
     const auto found = std::ranges::find(info.words, *word);
     if (found != info.words.end()) return static_cast<double>(found - info.words.begin());
     throw ParameterError(
-        std::string(info.name) + " = " + Shown(given) + ": expected " + AllowedText(info), "",
-        NearestName(*word, info.words));
+        std::string(info.name) + " = " + Shown(given) + ": expected " + AllowedText(info),
+        AllowedText(info), DidYouMean(*word, info.words));
   }
   const double* number = std::get_if<double>(&given);
   if (number && *number == std::floor(*number) && *number >= info.min && *number <= info.max)
@@ -148,6 +146,11 @@ std::string AllowedText(const ParameterInfo& info) {
   if (!info.unit.empty()) text.append(" ").append(info.unit);
   if (info.type == ParameterType::kInteger) return std::string("an integer, ").append(text);
   return info.type == ParameterType::kVector ? std::string("3 numbers, each ").append(text) : text;
+}
+
+std::vector<std::string> AllowedValues(const ParameterInfo& info) {
+  if (info.type == ParameterType::kBoolean) return {"true", "false"};
+  return {info.words.begin(), info.words.end()};
 }
 
 }  // namespace regrasp

@@ -16,21 +16,16 @@ namespace regrasp {
 /// What somebody gives for a parameter: true or false, a number, a word, or several numbers.
 using GivenValue = std::variant<bool, double, std::string, std::vector<double>>;
 
-/// what() names parameter and value; `allowed` what it may be, where what() does not; `nearest` the
-/// word that was probably meant, or "".
+/// what() names parameter and value.
 class ParameterError : public std::invalid_argument {
  public:
-  ParameterError(const std::string& message, std::string what_is_allowed,
-                 std::string_view nearest_word = {})
+  ParameterError(const std::string& message, std::string allowed_text,
+                 const std::string& nearest = "")
       : std::invalid_argument(message),
-        allowed(std::move(what_is_allowed)),
-        nearest(nearest_word) {}
-  std::string allowed, nearest;
-  /// "did you mean 'x'?", "allowed: …", or "" where what() has said it.
-  std::string Hint() const {
-    if (!nearest.empty()) return "did you mean '" + nearest + "'?";
-    return allowed.empty() ? "" : "allowed: " + allowed;
-  }
+        allowed(std::move(allowed_text)),
+        hint(nearest.empty() ? "allowed: " + allowed : nearest) {}
+  std::string allowed;  ///< AllowedText
+  std::string hint;     ///< "did you mean 'x'?" or "allowed: …"
 };
 
 /// The value as the table's set() takes it. For a boolean 0 and 1 stand too, for a word its number:
@@ -43,5 +38,8 @@ std::string ParameterText(const ParameterInfo& info, const Vector3d& value);
 /// "0.01 ... 1 m", "an integer, 1 ... 1000", "true or false", "exploring or returning",
 /// "3 numbers, each -50 ... 50 m/s2".
 std::string AllowedText(const ParameterInfo& info);
+
+/// Its values, where they can be listed.
+std::vector<std::string> AllowedValues(const ParameterInfo& info);
 
 }  // namespace regrasp

@@ -12,6 +12,7 @@
 #include "core/common/nearest_name.h"
 #include "core/files/toml_text.h"
 #include "core/protocol/config_path.h"
+#include "core/protocol/errors.h"
 #include "core/protocol/user_directories.h"
 #include "core/session/parameter_value.h"
 #include "daemon/wire/frame_json.h"
@@ -80,8 +81,7 @@ struct Reader {
     try {
       value = ReadParameterValue(info, *given);
     } catch (const ParameterError& e) {
-      const std::string hint = e.Hint();
-      Fail(node, hint.empty() ? e.what() : fmt::format("{}; {}", e.what(), hint));
+      Fail(node, WithHint(e.what(), e.hint));
     }
     config->parameters.emplace_back(name, value);
     config->origins["parameters." + name] = Place(node);

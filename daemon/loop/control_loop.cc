@@ -1,7 +1,5 @@
 #include "daemon/loop/control_loop.h"
 
-#include <cstdio>
-
 namespace regrasp {
 namespace {
 
@@ -198,12 +196,9 @@ void ControlLoop::TickOnce() {
 }
 
 void ControlLoop::FinishStep(JobState state, const char* error) {
-  step_.state = state;
-  step_.end_tick = session_->tick();
-  std::snprintf(step_.error, sizeof step_.error, "%s", error);
   if (state == JobState::kDone) step_.progress = 1;
   steps_left_ = 0;
-  EmitJob(step_);
+  step_ = EndJob(step_, state, error);
 }
 
 }  // namespace regrasp

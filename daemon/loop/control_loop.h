@@ -169,7 +169,7 @@ class ControlLoop {
   void Adopt(std::unique_ptr<Session> session);
   void EndRestore(JobState state, const char* error);
   /// Tells the end of a job that no session ends.
-  void EndJob(JobRecord job, JobState state, const char* why);
+  JobRecord EndJob(JobRecord job, JobState state, const char* why);
   void Apply(const Command& command);
   void Mark(std::uint64_t request, ControlRequest::Part part);
   void BeginJournal(std::shared_ptr<const RunStart> start);

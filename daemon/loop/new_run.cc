@@ -26,7 +26,7 @@ void ControlLoop::CancelWaiting(std::int64_t id, const char* why) {
   });
 }
 
-void ControlLoop::EndJob(JobRecord job, JobState state, const char* why) {
+JobRecord ControlLoop::EndJob(JobRecord job, JobState state, const char* why) {
   job.state = state;
   job.end_tick = session_->tick();
   if (state == JobState::kCancelled) {
@@ -35,6 +35,7 @@ void ControlLoop::EndJob(JobRecord job, JobState state, const char* why) {
   }
   std::snprintf(job.error, sizeof job.error, "%s", why);
   EmitJob(job);
+  return job;
 }
 
 /// Ends the jobs of a run that another one takes the place of.

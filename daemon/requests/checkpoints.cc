@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/common/nearest_name.h"
 #include "core/files/names.h"
 #include "core/journal/journal_text.h"
 #include "core/journal/provenance.h"

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/common/nearest_name.h"
 #include "core/journal/journal.h"
 #include "core/journal/journal_text.h"
 #include "daemon/requests/handlers.h"

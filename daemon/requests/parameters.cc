@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/common/nearest_name.h"
 #include "core/files/problem_list.h"
 #include "core/session/parameter_value.h"
 #include "daemon/requests/handlers.h"
@@ -43,8 +44,8 @@ Command SetCommand(const ParameterInfo& info, const GivenValue& given, std::stri
   try {
     command.value = ReadParameterValue(info, given);
   } catch (const ParameterError& e) {
-    throw RpcException(
-        RpcError{ErrorCode::kInvalidParams, e.what(), e.Hint(), std::string(param), {}});
+    throw RpcException(RpcError{ErrorCode::kInvalidParams, e.what(), e.hint, std::string(param),
+                                AllowedValues(info)});
   }
   return command;
 }
@@ -65,9 +66,7 @@ Command ReadMember(const Service& service, const std::string& name, const JsonIn
     throw RpcException(
         RpcError{ErrorCode::kInvalidParams,
                  fmt::format("{}: expected {}", name, Name(ParamType::kParameterValue)),
-                 fmt::format("allowed: {}", AllowedText(info)),
-                 name,
-                 {}});
+                 fmt::format("allowed: {}", AllowedText(info)), name, AllowedValues(info)});
   return SetCommand(info, *given, name);
 }
 
@@ -76,8 +75,7 @@ RpcError Together(std::vector<RpcError> errors, std::size_t more, bool one_code)
   ProblemList problems;
   RpcError all = errors.front();
   for (RpcError& error : errors) {
-    problems.Add(error.hint.empty() ? error.message
-                                    : fmt::format("{}; {}", error.message, error.hint));
+    problems.Add(WithHint(error.message, error.hint));
     error.allowed.clear();  // every parameter, again and again
   }
   problems.AddUnkept(more);

@@ -120,11 +120,6 @@ std::optional<GivenValue> ToGivenValue(const JsonIn& json) {
   return {};
 }
 
-std::string DidYouMean(std::string_view wanted, const std::vector<std::string>& names) {
-  const std::string_view near = NearestName(wanted, names);
-  return near.empty() ? "" : fmt::format("did you mean '{}'?", near);
-}
-
 Params::Params(const MethodSpec& method, const JsonIn& values, const NameLookup& names)
     : values_(values) {
   for (const auto& [key, value] : values.items()) {

@@ -44,7 +44,4 @@ class Params {
 /// True, false, a number, a word, or up to 3 numbers; anything else is not a parameter's value.
 std::optional<GivenValue> ToGivenValue(const JsonIn& json);
 
-/// "did you mean 'x'?", or "" when nothing is near.
-std::string DidYouMean(std::string_view wanted, const std::vector<std::string>& names);
-
 }  // namespace regrasp

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/common/nearest_name.h"
 #include "core/files/draft.h"
 #include "core/hand/kinematics.h"
 #include "core/session/start.h"

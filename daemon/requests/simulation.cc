@@ -209,6 +209,13 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
   for (const auto& [name, level] : kLevels) levels.*level = params.Number(name, levels.*level);
   levels.object_delay_frames =
       static_cast<int>(params.Integer("object_delay_frames", levels.object_delay_frames));
+  if (params.Integer("object_delay_frames", 0) > 0 && levels.object_rate_hz == 0)
+    throw RpcException(RpcError{ErrorCode::kInvalidParams,
+                                "object_delay_frames delays poses that come at a rate, and "
+                                "object_rate_hz is 0",
+                                "give object_rate_hz, too",
+                                "object_delay_frames",
+                                {}});
   const double sample_s = SampleTime(service.dt());
   if (const double gap = params.Number("dropout_gap_s", 0); gap > 0 && gap < sample_s)
     throw RpcException(

@@ -86,10 +86,9 @@ RpcRequest ReadRequest(const JsonIn& message) {
                    R"(send {"jsonrpc":"2.0","id":1,"method":"status"})");
   for (const auto& [key, value] : message.items()) {
     if (std::ranges::find(kMembers, key) != kMembers.end()) continue;
-    const std::string_view near = NearestName(key, kMembers);
+    const std::string near = DidYouMean(key, kMembers);
     return invalid(fmt::format("unknown member '{}'", key.substr(0, 64)),
-                   near.empty() ? "a request has jsonrpc, id, method and params"
-                                : fmt::format("did you mean '{}'?", near));
+                   near.empty() ? "a request has jsonrpc, id, method and params" : near);
   }
   if (message.value("jsonrpc", JsonIn()) != "2.0")
     return invalid("jsonrpc is not \"2.0\"", R"(add "jsonrpc":"2.0")");

@@ -21,6 +21,8 @@ REGRASP = BIN / "regrasp"
 REGRASPD = BIN / "regraspd"
 # Far above anything a loaded machine needs: reached only by a hang.
 HANG_S = 120
+# A command in a hint that could ask a daemon, but does not say which.
+NO_SOCKET = r"(?<!\S)regrasp (?!-s |help|hand |object )\w"
 # A home of their own for the programs under test: what they write there (history, output) goes with it.
 HOME = tempfile.mkdtemp(prefix="regrasp-home-")
 atexit.register(shutil.rmtree, HOME, ignore_errors=True)
@@ -66,9 +68,12 @@ class Case(unittest.TestCase):
         self.socket = self.dir / "r" / "regrasp.sock"
 
     def regrasp(self, *words, env=None, stdin="", binary=REGRASP, cwd=None):
-        """Hints are told without the socket, which every line here names."""
+        """Every hint names the socket, as every line here does, and is given to the tests without it."""
         done = subprocess.run([str(binary), "-s", str(self.socket), *map(str, words)], input=stdin, env=env or environment(),
                               capture_output=True, text=True, timeout=HANG_S, check=False, cwd=cwd)
+        if binary == REGRASP:
+            for hint in re.findall(r"^  try: (.*)", done.stderr, re.MULTILINE):
+                self.assertIsNone(re.search(NO_SOCKET, hint), f"no socket in: {hint}")
         done.stderr = done.stderr.replace(f"regrasp -s {self.socket} ", "regrasp ")
         return done
 

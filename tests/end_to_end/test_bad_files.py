@@ -95,6 +95,16 @@ class BadFiles(DaemonCase):
                     lost = self.json(*words, *stretch, code=code)["lost"]
                     self.assertEqual([loss["offset"] for loss in lost], [place] if code else [])
                     self.remove_made()
+        # Chunks of the journal are read wherever they lie: what is lost of them counts within the stretch alone.
+        late = bytearray(self.good.read_bytes())
+        for at, begin, _ in chunks:
+            if begin > 1e9:
+                late[at + 8 + struct.unpack_from("<Q", late, at + 1)[0]] ^= 16
+        spoilt = self.dir / "late.mcap"
+        spoilt.write_bytes(late)
+        for kind in ("csv", "npz", "mcap"):
+            stretch = ["export", spoilt, "--format", kind, "-o", self.dir / f"made.{kind}", "--from", 0, "--to", 0.5]
+            self.assertEqual(self.json(*stretch)["lost"], [], kind)
         plot = self.regrasp("plot", "quality", path, "-o", self.dir / "made.png")
         self.assertEqual((plot.returncode, plot.stdout), (1, f"{self.dir / 'made.png'}\n"))
         self.assertIn(f"note: bad.mcap lost {9 + struct.unpack_from('<Q', data, place + 1)[0]} bytes at {place} (", plot.stderr)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shlex
 import subprocess
 import unittest
 
@@ -23,6 +24,15 @@ class Csv(DaemonCase):
         explored = next(row for row in rows if row["method"] == "explore")
         self.assertEqual((explored["finger"], explored["criterion"]), ("ring", "manipulability"))
         self.assertEqual(rows[0]["finger"], "")
+
+    def test_what_prints_no_table_says_how_it_is_told_instead(self):
+        for words in (["object", "show", "a b.urdf"], ["hand", "check", "a b.urdf", "--inertia-from-shape"], ["plot", "quality", "a b.mcap", "c.mcap", "-o", "d.png"]):
+            with self.subTest(words):
+                cause, hint = self.refused(2, "--csv", *words)
+                self.assertIn("prints no table", cause)
+                again = shlex.split(hint.removeprefix("  try: "))
+                self.assertEqual(again[:2], ["regrasp", "--json"])
+                self.assertEqual(sorted(again[2:]), sorted("--output" if word == "-o" else word for word in words))
 
     def test_a_stream_has_the_same_columns_idle_and_holding(self):
         topics = ("status", "contacts", "quality", "joints", "truth")

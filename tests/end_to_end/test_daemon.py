@@ -129,14 +129,15 @@ class Session(DaemonCase):
         self.refused(2, "call", "status", '{"x": 1}')
         # What to try is a command; what the daemon hints at is part of the cause.
         for words, part, next_command in [(["param", "set", "object.friction", "7"], "object.friction = 7 is out of range; allowed: 0.001 ... 1", "regrasp param list"),
+                                          (["param", "set", "gait.mode", "zzz"], "gait.mode = 'zzz': expected exploring or returning", "regrasp param list"),
                                           (["param", "get", "object.frictoin"], "did you mean 'object.friction'?", "regrasp param list"),
                                           (["reset", "--object", "eg"], "did you mean 'egg'?", "regrasp help reset"),
-                                          (["job", "show", "99"], "no job 99", "regrasp job list"),
+                                          (["job", "show", "99"], "no job 99; call job.list for the last jobs", "regrasp job list"),
                                           (["call", "status", '{"x": 1}'], "status takes no parameters", "regrasp help call")]:
             with self.subTest(words):
                 done = self.regrasp(*words)
                 cause, hint = done.stderr.splitlines()
-                self.assertIn(part, cause)
+                self.assertTrue(cause.endswith(part), cause)
                 self.assertEqual(hint, f"  try: {next_command}")
         self.assertEqual(self.json("status")["state"], "idle")
 
@@ -150,6 +151,9 @@ class Session(DaemonCase):
         taxels = self.json("noise", "set", "--taxel-pitch", "4", "--object-rate", "30", "--object-delay-frames", "2")
         self.assertEqual((taxels["taxel_pitch_m"], taxels["object_rate_hz"], taxels["object_delay_frames"], taxels["preset"]), (0.004, 30, 2, "custom"))
         self.assertIn("allowed are 0 to 7", self.refused(2, "noise", "set", "--object-delay-frames", "8")[0])
+        self.assertIn("object_rate_hz is 0", self.refused(2, "noise", "set", "--object-rate", "0", "--object-delay-frames", "2")[0])
+        self.assertNotIn("pose delay", self.expect(0, "noise", "set", "--object-rate", "0", "--taxel-pitch", "0.1").stdout)
+        self.assertIn("0.10 mm", self.expect(0, "noise", "show").stdout)
         self.assertEqual(self.json("param", "set", "object.friction", "0.5")["value"], 0.5)
         self.assertEqual(self.json("param", "get", "object.friction")["value"], 0.5)
         self.assertEqual(self.json("param", "set", "gravity", "0,0,-1")["value"], [0, 0, -1])

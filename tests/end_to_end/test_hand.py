@@ -9,7 +9,7 @@ import signal
 import subprocess
 import unittest
 
-from harness import HANG_S, REGRASP, Case, environment
+from harness import HANG_S, REGRASP, SOURCE, Case, environment
 
 INERTIAL = '<inertial><origin xyz="0 0 {0}"/><mass value="{1}"/><inertia ixx="{2}" ixy="0" ixz="0" iyy="{2}" iyz="0" izz="{2}"/></inertial>'
 JOINT = """<joint name="{name}" type="revolute"><parent link="{parent}"/><child link="{child}"/><origin xyz="{xyz}" rpy="0 0 {yaw}"/>
@@ -327,6 +327,12 @@ class Hand(Case):
         four = self.write("four.urdf", hand(4))
         self.assertIn("file not found", self.refused(6, "hand", "check", self.dir / "gone.urdf"))
         self.assertIn("available are allegro", self.refused(6, "hand", "check", "gone"))
+        lost = self.write("lost.toml", 'urdf = "none.urdf"\n' + (SOURCE / "models/hands/shadow.toml").read_text())
+        alone = self.write("alone.toml", (SOURCE / "models/hands/shadow.toml").read_text())
+        for scenario, cause in ((lost, "file not found"), (alone, "no alone.urdf beside it")):
+            for words in (["hand", "check", scenario], ["up", "--hand", scenario], ["experiment", "rotation", "--hand", scenario, "-o", self.dir / "o"]):
+                self.assertIn(cause, self.refused(6, *words))
+        self.assertEqual(self.regrasp("hand", "check", "shadow", env=environment(REGRASP_MODELS_DIR="/nope")).returncode, 6)
         self.assertIn("--seed is given twice", self.refused(2, "hand", "new", "x.urdf", "-o", "x.toml", "--seed", "1", "--seed", "2"))
         self.assertIn("must end in .toml", self.refused(2, "hand", "new", four, "-o", self.dir / "x.txt"))
         self.assertIn("control character", self.refused(2, "hand", "new", four, "-o", self.dir / "a\nb.toml"))

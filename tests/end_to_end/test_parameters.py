@@ -98,6 +98,8 @@ class Parameters(DaemonCase):
         file.write_text("object.friction = 0.41\n[parameters]\ngait.hop = false\n")
         cause, _ = self.refused(2, "param", "load", file)
         self.assertEqual(cause, f"regrasp: {file}:1: object.friction: is outside of [parameters]; only what stands in that table is a parameter")
+        file.write_text('"parameters.gait.hop" = true\n[parameters]\ngait.hop = false\n')
+        self.assertIn(":1: parameters.gait.hop: is outside of [parameters]", self.refused(2, "param", "load", file)[0])
         file.write_text('seed = "x"\n[parameters]\ngait.mod = 1\n[object]\nmas_kg = 1\n')
         errors = self.refused_list(2, "param", "load", file)
         for error, place in zip(errors, (":1: seed: is outside", ":5: object.mas_kg: is outside"), strict=True):

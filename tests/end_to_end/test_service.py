@@ -144,7 +144,7 @@ class Printing(Case):
     def test_a_mistyped_flag_is_named(self):
         done = subprocess.run([REGRASPD, "--sped", "max"], capture_output=True, text=True, env=environment(), check=False)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertEqual(done.stderr, "regraspd: unknown argument --sped; did you mean --speed?\ntry: regraspd --help\n")
+        self.assertEqual(done.stderr, "regraspd: unknown argument --sped; did you mean '--speed'?\ntry: regraspd --help\n")
 
 
 class Manager:

@@ -72,11 +72,12 @@ class Shape(DaemonCase):
         self.refused(5, "plot", "shape")
 
     def test_a_directory_that_is_missing_is_not_made(self):
-        for words in (["shape", "-o", "FILE.ply"], ["plot", "scene", "-o", "FILE.png"], ["param", "save", "FILE.toml"]):
+        for words in (["shape", "-o", "FILE.ply"], ["plot", "scene", "-o", "FILE.png"], ["object", "show", "egg", "-o", "FILE.png"], ["param", "save", "FILE.toml"]):
             with self.subTest(words):
                 cause, _ = self.refused(74, *(word.replace("FILE", str(self.dir / "no" / "x" / "felt")) for word in words))
                 self.assertIn(f"{self.dir / 'no' / 'x'} is not a directory", cause)
                 self.assertFalse((self.dir / "no").exists())
+                self.assertEqual(list((self.dir / "out").glob("*.png")), [], "drawn in vain")
 
     def test_another_suffix_is_refused(self):
         said = self.refused(2, "shape", "-o", self.dir / "felt.obj")

@@ -37,6 +37,10 @@ TEST_F(ParameterRequests, WordsAndBooleansAreSpokenAndTheirNumbersUnderstood) {
   const Json error =
       client->Ask("param.set", {{"name", "gait.mode"}, {"value", "explorin"}})["error"];
   EXPECT_EQ(error["data"]["hint"], "did you mean 'exploring'?");
+  EXPECT_EQ(error["data"]["allowed"], Json({"exploring", "returning"}));
+  const Json data = client->Ask("param.set", {{"name", "gait.hop"}, {"value", 2}})["error"]["data"];
+  EXPECT_EQ(data["hint"], "allowed: true or false");
+  EXPECT_EQ(data["allowed"], Json({"true", "false"}));
   EXPECT_EQ(
       client->Ask("param.set", {{"name", "object.friction"}, {"value", "0,5"}})["error"]["message"],
       "object.friction is one number, with a point, not '0,5'");

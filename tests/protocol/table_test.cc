@@ -93,6 +93,16 @@ TEST(NearestName, FindsTypingErrorsAndNothingElse) {
   EXPECT_EQ(NearestName("zoo_bxo", std::vector<std::string_view>{"zoo_egg", "zoo_box_flat"}),
             "zoo_box_flat");
   EXPECT_EQ(NearestName("ma", std::vector<std::string_view>{"manipulability"}), "");
+  // Short words are not near to whatever is as short, nor to the first word of a longer name.
+  const std::vector<std::string_view> objects = {"cube_40mm", "zoo_box_flat", "zoo_egg",
+                                                 "zoo_pear"};
+  for (const char* other : {"foo", "moo", "boo", "foobar", "tub"})
+    EXPECT_EQ(NearestName(other, objects), "") << other;
+  // The beginning of many is none of them.
+  EXPECT_EQ(NearestName("zoo", objects), "");
+  EXPECT_EQ(NearestName("gait", std::vector<std::string_view>{"gait.hop", "gait.mode"}), "");
+  EXPECT_EQ(NearestName("exp", std::vector<std::string_view>{"explore", "explore"}), "explore");
+  EXPECT_EQ(NearestName("cube", objects), "cube_40mm");
   EXPECT_EQ(OrNearest("rign", names), "; did you mean 'ring'?");
   EXPECT_EQ(OrNearest("elbow", names), "");
   EXPECT_EQ(EditDistance("abcd", "acbd"), 1u);  // a swap is one slip

@@ -135,7 +135,7 @@ class Methods:
         """
         return self._ask("noise.get", {})
 
-    def noise_set(self, preset: str | None = None, position_m: float | None = None, normal_rad: float | None = None, force_n: float | None = None, joint_rad: float | None = None, object_position_m: float | None = None, object_rotation_rad: float | None = None, taxel_pitch_m: float | None = None, object_rate_hz: float | None = None, object_delay_frames: int | None = None, position_bias_m: float | None = None, force_bias_n: float | None = None, joint_bias_rad: float | None = None, object_bias_m: float | None = None, position_drift_m: float | None = None, force_drift_n: float | None = None, object_drift_m: float | None = None, dropout_fraction: float | None = None, dropout_gap_s: float | None = None, latency_s: float | None = None) -> dict:
+    def noise_set(self, preset: str | None = None, position_m: float | None = None, normal_rad: float | None = None, force_n: float | None = None, joint_rad: float | None = None, object_position_m: float | None = None, object_rotation_rad: float | None = None, position_bias_m: float | None = None, force_bias_n: float | None = None, joint_bias_rad: float | None = None, object_bias_m: float | None = None, position_drift_m: float | None = None, force_drift_n: float | None = None, object_drift_m: float | None = None, dropout_fraction: float | None = None, dropout_gap_s: float | None = None, latency_s: float | None = None, taxel_pitch_m: float | None = None, object_rate_hz: float | None = None, object_delay_frames: int | None = None) -> dict:
         """Change noise levels.
         preset: all levels of a preset; other parameters then change single levels; one of off, fine, paper, coarse,
             taxel; left out: the present levels.
@@ -145,10 +145,6 @@ class Methods:
         joint_rad: joint angle [rad]; 0 to 1.6; left out: unchanged.
         object_position_m: object position, per axis [m]; 0 to 0.1; left out: unchanged.
         object_rotation_rad: object orientation, per axis [rad]; 0 to 1.6; left out: unchanged.
-        taxel_pitch_m: contacts are felt by taxels this far apart; 0: by none [m]; 0 to 0.05; left out: unchanged.
-        object_rate_hz: the object's pose comes so often; 0: with every reading [Hz]; 0 to 1000; left out:
-            unchanged.
-        object_delay_frames: and so many poses late, where it has a rate; 0 to 7; left out: unchanged.
         position_bias_m: contact position, constant, per axis of the fingertip [m]; 0 to 0.02; left out: unchanged.
         force_bias_n: normal force, constant [N]; 0 to 2; left out: unchanged.
         joint_bias_rad: joint angle, constant [rad]; 0 to 0.5; left out: unchanged.
@@ -159,9 +155,15 @@ class Methods:
         dropout_fraction: share of the time in which a fingertip feels nothing; 0 to 0.9; left out: unchanged.
         dropout_gap_s: mean length of such a gap; 0: a sample, which is the least [s]; 0 to 1; left out: unchanged.
         latency_s: age of what a fingertip reports [s]; 0 to 0.02; left out: unchanged.
+        taxel_pitch_m: contacts are felt by taxels this far apart; 0: without taxels, positions are continuous [m];
+            0 to 0.05; left out: unchanged.
+        object_rate_hz: the object's pose comes so often; 0: with every reading [Hz]; 0 to 1000; left out:
+            unchanged.
+        object_delay_frames: delay of the object's pose, in poses; only with object_rate_hz; 0 to 7; left out:
+            unchanged.
         Returns preset and every level.
         """
-        return self._ask("noise.set", {"preset": preset, "position_m": position_m, "normal_rad": normal_rad, "force_n": force_n, "joint_rad": joint_rad, "object_position_m": object_position_m, "object_rotation_rad": object_rotation_rad, "taxel_pitch_m": taxel_pitch_m, "object_rate_hz": object_rate_hz, "object_delay_frames": object_delay_frames, "position_bias_m": position_bias_m, "force_bias_n": force_bias_n, "joint_bias_rad": joint_bias_rad, "object_bias_m": object_bias_m, "position_drift_m": position_drift_m, "force_drift_n": force_drift_n, "object_drift_m": object_drift_m, "dropout_fraction": dropout_fraction, "dropout_gap_s": dropout_gap_s, "latency_s": latency_s})
+        return self._ask("noise.set", {"preset": preset, "position_m": position_m, "normal_rad": normal_rad, "force_n": force_n, "joint_rad": joint_rad, "object_position_m": object_position_m, "object_rotation_rad": object_rotation_rad, "position_bias_m": position_bias_m, "force_bias_n": force_bias_n, "joint_bias_rad": joint_bias_rad, "object_bias_m": object_bias_m, "position_drift_m": position_drift_m, "force_drift_n": force_drift_n, "object_drift_m": object_drift_m, "dropout_fraction": dropout_fraction, "dropout_gap_s": dropout_gap_s, "latency_s": latency_s, "taxel_pitch_m": taxel_pitch_m, "object_rate_hz": object_rate_hz, "object_delay_frames": object_delay_frames})
 
     def param_get(self, name: str | None = None) -> dict:
         """Values, units, ranges and sources of parameters.

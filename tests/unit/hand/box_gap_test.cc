@@ -30,6 +30,15 @@ TEST(BoxGap, OfBoxesWhoseDistanceIsKnown) {
   EXPECT_NEAR(Gap(one, two(0.023, M_PI / 4)), 0.013 - std::sqrt(2) * 0.010, 1e-15);
 }
 
+// An edge along z before one along y: no plane of a face is between them.
+TEST(BoxGap, OfBoxesThatCrossEdgeToEdge) {
+  const Vector3d cube = Vector3d::Constant(0.010);
+  const PlacedBox one = At(Vector3d::Zero(), Vector3d::UnitZ(), M_PI / 4, cube);
+  const PlacedBox two = At({0.031, 0, 0}, Vector3d::UnitY(), M_PI / 4, cube);
+  EXPECT_NEAR(Gap(one, two), 0.031 - 2 * std::sqrt(2) * 0.010, 1e-15);
+  EXPECT_NEAR(Gap(two, one), 0.031 - 2 * std::sqrt(2) * 0.010, 1e-15);
+}
+
 TEST(BoxGap, OfABoxAndAStraightLinkWhoseDistanceIsKnown) {
   const PlacedBox box = At(Vector3d::Zero(), Vector3d::UnitZ(), 0, kHalf);
   const Vector3d z(0, 0, 0.05);
@@ -73,10 +82,7 @@ TEST(BoxGap, NoPairOfPointsIsNearer) {
 }
 
 // Each of the last two links gets a box: it stands where the kinematics of the whole hand has it.
-TEST(BoxGap, BoxesAreThoseOfTheLastTwoLinks) {
-  LoadedScenario model = LoadScenario("allegro", "sphere", ModelSearchPath());
-  HandModel& hand = model.hand;
-  const JointVector q = model.scenario.q_closed;
+void ExpectBoxesOfTheLastTwoLinks(HandModel hand, const JointVector& q) {
   KinematicsData data;
   ForwardKinematics(hand, q, &data);
   Shape box;
@@ -98,6 +104,38 @@ TEST(BoxGap, BoxesAreThoseOfTheLastTwoLinks) {
       EXPECT_EQ(boxes[k].half_extents, expected[k].half_extents);
     }
   }
+}
+
+TEST(BoxGap, BoxesAreThoseOfTheLastTwoLinks) {
+  const LoadedScenario model = LoadScenario("allegro", "sphere", ModelSearchPath());
+  ExpectBoxesOfTheLastTwoLinks(model.hand, model.scenario.q_closed);
+}
+
+TEST(BoxGap, BoxesOfAFingerWhoseLastJointFollowsTheFirst) {
+  HandModel hand;
+  hand.num_coupled = 1;
+  hand.links.resize(3);
+  hand.joints.resize(2);
+  for (int j = 0; j < 2; ++j) {
+    Joint& joint = hand.joints[j];
+    joint.parent_link = j;
+    joint.child_link = j + 1;
+    joint.X_PJ.translation().z() = 0.04 * j;
+    joint.lower = -1.5;
+    joint.upper = 1.5;
+    hand.links[j + 1].parent_joint = j;
+  }
+  hand.joints[1].driver = 0;
+  hand.joints[1].ratio = 0.7;
+  hand.joints[1].offset = 0.1;
+  Shape tip;
+  tip.b_L.z() = 0.04;
+  tip.radius = 0.005;
+  hand.links[2].shapes = {tip};
+  hand.fingers.push_back({"only", {0}, 2, tip.b_L, tip.radius});
+  JointVector q(1);
+  q[0] = 0.5;
+  ExpectBoxesOfTheLastTwoLinks(hand, q);
 }
 
 }  // namespace

@@ -171,10 +171,10 @@ TEST_F(LoaderTest, RefusesBadScenarios) {
   const Case cases[] = {
       {"armature_kg_m2",
        "armatur_kg_m2",
-       {"mini.toml:3", "\"armatur_kg_m2\"", "nearest is \"armature_kg_m2\""}},
-      {"position_m", "positon_m", {"mini.toml:5", "nearest is \"position_m\""}},
-      {"tip_link", "tiplink", {"mini.toml:8", "nearest is \"tip_link\""}},
-      {"B = 70", "BB = 70", {"mini.toml:14", "\"BB\"", "nearest is \"B\""}},
+       {"mini.toml:3", "\"armatur_kg_m2\"", "did you mean 'armature_kg_m2'?"}},
+      {"position_m", "positon_m", {"mini.toml:5", "did you mean 'position_m'?"}},
+      {"tip_link", "tiplink", {"mini.toml:8", "did you mean 'tip_link'?"}},
+      {"B = 70", "BB = 70", {"mini.toml:14", "\"BB\"", "did you mean 'B'?"}},
       {"B = 70\n", "", {"mini.toml:12", "\"B\" is missing"}},
       {"A = 60", "A = 86", {"mini.toml:13", "q_closed_deg.A", "86", "85.94"}},
       {"A = 60", "A = nan", {"mini.toml:13", "q_closed_deg.A", "nan"}},
@@ -243,7 +243,7 @@ TEST_F(LoaderTest, ReadsFrictionBesideTheObject) {
   Write("objects/ball.toml", "friction = 1.5\n");
   ExpectRefused({"ball.toml:1", "friction", "1.5", "1"});
   Write("objects/ball.toml", "frictoin = 0.5\n");
-  ExpectRefused({"ball.toml:1", "nearest is \"friction\""});
+  ExpectRefused({"ball.toml:1", "did you mean 'friction'?"});
 }
 
 TEST_F(LoaderTest, AnswersUnknownNamesWithTheKnownOnes) {
@@ -339,6 +339,16 @@ TEST_F(LoaderTest, WhatAHandStandsOnMayBeLargeAndItsPalmMayNot) {
     else
       EXPECT_EQ(Load().hand.links.front().shapes.size(), 1u);
   }
+  // The same as a mesh.
+  Write("hands/slab.obj",
+        "v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const std::string slab =
+      "<collision><geometry><mesh filename=\"slab.obj\"/></geometry></collision></link>";
+  EditHand("<link name=\"palm\"/>", "<link name=\"palm\">" + slab);
+  ExpectRefused({"link \"palm\"", "mesh is 3 m long", "at most 1 m"});
+  EditHand("<link name=\"palm\"/>", "<link name=\"palm\"/><link name=\"table\">" + slab +
+                                        fmt::format(fmt::runtime(joint), "table", "palm"));
+  EXPECT_EQ(Load().hand.links.front().shapes.size(), 1u);
 }
 
 }  // namespace

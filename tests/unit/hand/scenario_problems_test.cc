@@ -35,7 +35,7 @@ TEST_F(ScenarioProblems, TellsAllMistakesOfAScenarioInTheOrderOfItsLines) {
   Write("hands/mini.toml", spoilt({"object =", "objekt =", "-9.81", "\"g\"", "1e-4", "1",  //
                                    "name = ", "lenght_m = 1\nname = ", "B = 20.5", "B = 400",
                                    "A = 60", "A = 60\nC = 1"}));
-  ExpectInOrder({"7 errors:\n  ", "mini.toml:1: unknown key \"objekt\"; nearest is \"object\"",
+  ExpectInOrder({"7 errors:\n  ", "mini.toml:1: unknown key \"objekt\"; did you mean 'object'?",
                  "mini.toml:1: key \"object\" is missing",
                  "mini.toml:2: gravity_m_s2 must be a number",
                  "mini.toml:3: armature_kg_m2 = 1; allowed 0 .. 0.1",
@@ -53,13 +53,13 @@ TEST_F(ScenarioProblems, TellsAllMistakesOfAScenarioInTheOrderOfItsLines) {
         spoilt({"tip_link = \"tip\"", "tip = \"tip\"", "B = 20.5", "B = 400", "B = 70", "D = 70"}));
   ExpectInOrder(
       {"4 errors:\n  ", "mini.toml:6: key \"tip_link\" is missing",
-       "mini.toml:8: unknown key \"tip\"; nearest is \"tip_link\"; allowed are name, tip_link",
+       "mini.toml:8: unknown key \"tip\"; did you mean 'tip_link'?; allowed are name, tip_link",
        "mini.toml:11: q_preshape_deg.B [deg] = 400; allowed -28.6529 .. 85.9487",
        "mini.toml:14: unknown key \"D\"; allowed are A, B"});
   Write("hands/mini.toml",
         spoilt({"tip_link = \"tip\"", "tip_link = \"tap\"", "B = 20.5", "B = 400"}));
   ExpectInOrder({"2 errors:\n  ",
-                 "mini.toml:8: finger \"only\": there is no link \"tap\"; nearest is \"tip\"; "
+                 "mini.toml:8: finger \"only\": there is no link \"tap\"; did you mean 'tip'?; "
                  "links are palm, tip, upper",
                  "mini.toml:11: q_preshape_deg.B"});
 }
@@ -71,7 +71,7 @@ TEST_F(ScenarioProblems, NamesThatTheUrdfHasNotAreTheScenarios) {
   };
   with("[locked_deg]\nBB = 3\nA = 2");
   ExpectInOrder(
-      {"mini.toml:10: locked_deg: there is no joint \"BB\"; nearest is \"B\"; joints are "
+      {"mini.toml:10: locked_deg: there is no joint \"BB\"; did you mean 'B'?; joints are "
        "A, B"});
   with("[coupled.B]\ndriver = \"B\"");
   EXPECT_TRUE(Refusal().ends_with(
@@ -85,7 +85,7 @@ TEST_F(ScenarioProblems, NamesThatTheUrdfHasNotAreTheScenarios) {
   // All of them, also those of what is wrong otherwise.
   with("[coupled.Bee]\ndriver = \"Aa\"\nratio = \"x\"");
   ExpectInOrder({"3 errors:\n  ", "mini.toml:9: coupled: there is no joint \"Bee\"; ",
-                 "mini.toml:10: coupled.Bee driver: there is no joint \"Aa\"; nearest is \"A\"",
+                 "mini.toml:10: coupled.Bee driver: there is no joint \"Aa\"; did you mean 'A'?",
                  "mini.toml:11: ratio must be a number"});
   EditScenario("tip_link = \"tip\"", "tip_link = \"palm\"");
   EXPECT_TRUE(Refusal().ends_with(

@@ -24,7 +24,7 @@ std::string Complaint(const char* name, const GivenValue& given) {
     ReadParameterValue(Row(name), given);
     return "";
   } catch (const ParameterError& e) {
-    return std::string(e.what()) + "|" + e.allowed + "|" + e.nearest;
+    return std::string(e.what()) + "|" + e.hint;
   }
 }
 
@@ -86,25 +86,29 @@ TEST(ParameterValue, ReadsWordsBooleansAndTheirFormerNumbers) {
 TEST(ParameterValue, SaysWhatIsWrongAndWhatIsAllowed) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(Complaint("object.friction", "0,5"),
-            "object.friction is one number, with a point, not '0,5'|0.001 ... 1|");
-  EXPECT_EQ(Complaint("object.friction", std::string("0.5")),
-            "object.friction is a number, and '0.5' is text: leave out the quotes|0.001 ... 1|");
+            "object.friction is one number, with a point, not '0,5'|allowed: 0.001 ... 1");
+  EXPECT_EQ(
+      Complaint("object.friction", std::string("0.5")),
+      "object.friction is a number, and '0.5' is text: leave out the quotes|allowed: 0.001 ... 1");
   EXPECT_EQ(Complaint("object.friction", std::vector<double>{1, 1, 1}),
-            "object.friction is one number, with a point, not [1, 1, 1]|0.001 ... 1|");
-  EXPECT_EQ(Complaint("object.friction", 7.0), "object.friction = 7 is out of range|0.001 ... 1|");
+            "object.friction is one number, with a point, not [1, 1, 1]|allowed: 0.001 ... 1");
+  EXPECT_EQ(Complaint("object.friction", 7.0),
+            "object.friction = 7 is out of range|allowed: 0.001 ... 1");
   EXPECT_NE(Complaint("object.friction", kNan), "");
   EXPECT_NE(Complaint("object.friction", true), "");
   EXPECT_EQ(Complaint("exploration.max_cycles", 1.5),
-            "exploration.max_cycles = 1.5: expected an integer, 1 ... 1000000 ticks||");
+            "exploration.max_cycles = 1.5: expected an integer, 1 ... 1000000 ticks|allowed: an "
+            "integer, 1 ... 1000000 ticks");
   EXPECT_EQ(Complaint("gait.mode", "explorin"),
-            "gait.mode = 'explorin': expected exploring or returning||exploring");
+            "gait.mode = 'explorin': expected exploring or returning|did you mean 'exploring'?");
   EXPECT_NE(Complaint("gait.mode", 2.0), "");
   EXPECT_NE(Complaint("gait.mode", 0.5), "");
   EXPECT_NE(Complaint("gait.mode", -1.0), "");
   EXPECT_NE(Complaint("gait.mode", kNan), "");
-  EXPECT_EQ(Complaint("gait.hop", 2.0), "gait.hop = 2: expected true or false||");
+  EXPECT_EQ(Complaint("gait.hop", 2.0),
+            "gait.hop = 2: expected true or false|allowed: true or false");
   EXPECT_EQ(Complaint("gravity", std::vector<double>{1, 2}),
-            "gravity is 3 numbers, not [1, 2]|3 numbers, each -50 ... 50 m/s2|");
+            "gravity is 3 numbers, not [1, 2]|allowed: 3 numbers, each -50 ... 50 m/s2");
   EXPECT_NE(Complaint("gravity", 9.81), "");
   EXPECT_NE(Complaint("gravity", std::vector<double>{0, 0, 51}), "");
   // A long value is cut between two characters.
