@@ -341,11 +341,8 @@ TEST_F(LoaderTest, WhatAHandStandsOnMayBeLargeAndItsPalmMayNot) {
   }
   // The same as a mesh.
   Write("hands/slab.obj",
-        "v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
-  const std::string slab =
-      "<collision><geometry><mesh filename=\"slab.obj\"/></geometry></collision></link>";
-  EditHand("<link name=\"palm\"/>", "<link name=\"palm\">" + slab);
-  ExpectRefused({"link \"palm\"", "mesh is 3 m long", "at most 1 m"});
+        "v 0 0 0\nv 3 0 0\nv 0 2 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const std::string slab = Replaced(box, "box size=\"3 2 0.1\"", "mesh filename=\"slab.obj\"");
   EditHand("<link name=\"palm\"/>", "<link name=\"palm\"/><link name=\"table\">" + slab +
                                         fmt::format(fmt::runtime(joint), "table", "palm"));
   EXPECT_EQ(Load().hand.links.front().shapes.size(), 1u);
