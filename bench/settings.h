@@ -45,8 +45,8 @@ inline ParameterSetting ReadSetting(const std::string& text) {
   try {
     setting.value = ReadParameterValue(setting.info(), given);
   } catch (const ParameterError& error) {
-    const std::string what = error.what(), hint = error.Hint();
-    throw std::runtime_error(hint.empty() ? what : what + "; " + hint);
+    const std::string what = error.what();
+    throw std::runtime_error(what.ends_with(error.allowed) ? what : what + "; " + error.hint);
   }
   return setting;
 }
