@@ -108,7 +108,8 @@ class Lockstep(DaemonCase):
                 self.assertLessEqual(done.returncode, 1, done.stderr)  # 2000 cycles are few
                 if not printed:
                     continue  # left out there
-                here = done.stdout.replace(str(self.dir / "walked"), "/home/me/.local/state/regrasp").splitlines()
+                here = done.stdout.replace(str(self.dir / "walked"), "/home/me/.local/state/regrasp")
+                here = here.replace(f"regrasp -s {self.socket} ", "regrasp ").splitlines()
                 shape = figures if not exact or any(word in words for word in inexact) else str
                 self.assertEqual([re.sub(r" +", " ", shape(line)) for line in here], [re.sub(r" +", " ", shape(line)) for line in printed],
                                  f"docs/{page}: regrasp {words}\n{done.stdout}{done.stderr}")
