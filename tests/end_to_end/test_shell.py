@@ -129,7 +129,7 @@ class Typed(DaemonCase):
 
     def test_an_error_is_shown_and_the_shell_goes_on(self):
         session = self.shell("shell")
-        self.answer(session, "statu\r", r"(?s)unknown command 'statu'.*try: regrasp status.*idle>$")
+        self.answer(session, "statu\r", r"(?s)unknown command 'statu'.*try: regrasp -s \S+ status.*idle>$")
         self.answer(session, "regrasp version\r", r"regrasp \d+\.\d+\.\d+\n")
 
     def test_control_c_drops_the_line_and_the_prompt_follows_the_state(self):
@@ -143,7 +143,7 @@ class Typed(DaemonCase):
         self.answer(session, "grasp --wait\r", "holding>$")
         self.answer(session, "rotate --continuous\r", "job 2: rotate started")
         self.answer(session, "job wait 2\r", "%")  # the progress line: it waits
-        self.answer(session, "\x03", r"(?s)interrupted; job 2 goes on.*try: regrasp job wait 2.*rotating>$")
+        self.answer(session, "\x03", r"(?s)interrupted; job 2 goes on.*try: regrasp -s \S+ job wait 2.*rotating>$")
         self.assertEqual(self.json("job", "show", "2")["state"], "running")
         self.answer(session, "stop\r", "job 2 stopped")
 
