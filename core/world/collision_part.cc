@@ -1,6 +1,7 @@
 #include "core/world/collision_part.h"
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 
 namespace regrasp {
@@ -87,6 +88,11 @@ bool MayTouch(const CollisionPart& a, const CollisionPart& b) {
 int Contacts(const CollisionPart& a, const CollisionPart& b, dContactGeom* out) {
   const int wanted = a.box && b.box ? kMaxPerPair : 1;
   dContactGeom found[8];
+  // Built without thread-local storage, as Debian has it, ODE has one workspace for meshes in all
+  // threads. The daemon collides in one only: nobody waits there.
+  static std::mutex workspace;
+  std::unique_lock lock(workspace, std::defer_lock);
+  if (dGeomGetClass(a.geom) == dTriMeshClass || dGeomGetClass(b.geom) == dTriMeshClass) lock.lock();
   const int n = dCollide(a.geom, b.geom, 8, found, sizeof(dContactGeom));
   const int kept = std::min(n, wanted);
   for (int k = 0; k < kept; ++k) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <numbers>
 #include <vector>
 
@@ -227,6 +228,21 @@ TEST(World, MeshRestsOnAFlatPalm) {
   world.SetStandIn(false);
   for (int k = 0; k < 2000; ++k) ASSERT_EQ(world.Step(), StepStatus::kOk) << world.fault_message();
   EXPECT_NEAR(world.state().p_WO.z(), 0.025, 1e-3);
+}
+
+// ODE may keep what it knows of a mesh in collision in one place for all threads.
+TEST(World, MeshesRestInSeveralThreadsAsInOne) {
+  const auto rest = [] {
+    World world(Slab(), MeshSphere(0.025, 4), {}, JointVector(0), At(0, 0, 0.026));
+    world.SetGravity(Vector3d(0, 0, -kG));
+    world.SetStandIn(false);
+    for (int k = 0; k < 2000; ++k) EXPECT_EQ(world.Step(), StepStatus::kOk);
+    return world.state().p_WO;
+  };
+  const Vector3d alone = rest();
+  std::vector<std::future<Vector3d>> others;
+  for (int k = 0; k < 4; ++k) others.push_back(std::async(std::launch::async, rest));
+  for (auto& other : others) EXPECT_EQ(other.get(), alone);
 }
 
 TEST_P(EachStepper, HeldBallIsBalancedByItsContacts) {
