@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/hand/scenario.h"
+#include "core/hand/urdf.h"
 #include "tests/unit/hand/model_files.h"
 
 namespace regrasp {
