@@ -46,7 +46,8 @@ inline ParameterSetting ReadSetting(const std::string& text) {
     setting.value = ReadParameterValue(setting.info(), given);
   } catch (const ParameterError& error) {
     const std::string what = error.what();
-    throw std::runtime_error(what.ends_with(error.allowed) ? what : what + "; " + error.hint);
+    const bool said = error.hint == "allowed: " + error.allowed && what.ends_with(error.allowed);
+    throw std::runtime_error(said ? what : what + "; " + error.hint);
   }
   return setting;
 }

@@ -3,6 +3,8 @@
 /// What every command gets: the global options, stdout, and the daemon once it is asked for.
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/client/errors.h"
 #include "cli/grammar/grammar.h"
@@ -19,6 +21,14 @@ class Context {
   Output& out() { return out_; }
   /// Seconds to wait for one answer.
   double timeout_s() const { return options_.timeout_s.value_or(10.0); }
+
+  /// Of a helper program's command line: what of it every command has. The hints of the helper name
+  /// the socket.
+  void AddCommon(std::vector<std::string>* words) const {
+    if (out_.format() == Format::kJson) words->push_back("--json");
+    if (options_.quiet) words->push_back("--quiet");
+    if (!options_.socket.empty()) words->insert(words->end(), {"--socket", options_.socket});
+  }
 
   /// What may come next, behind a line of an answer: "    (regrasp record stop)".
   std::string Next(const std::string& command) const {

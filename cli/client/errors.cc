@@ -16,19 +16,21 @@ namespace regrasp::cli {
 std::string JsonQuote(const std::string& text) { return JsonText(nlohmann::json(text)); }
 
 std::string AtSocket(const std::string& hint, const std::string& socket) {
-  constexpr std::string_view kProgram = "regrasp ";
+  constexpr std::string_view kProgram = "regrasp ", kEscapedQuote = "'\\''";
   if (socket.empty()) return hint;
   std::string text;
-  for (std::size_t at = 0, begin = 0; begin < hint.size(); begin = at) {
-    const std::string_view rest = std::string_view(hint).substr(begin);
-    const bool command =
-        rest.starts_with(kProgram) &&
-        (begin == 0 || std::string_view(" (").find(hint[begin - 1]) != std::string_view::npos);
-    at = begin + (command ? kProgram.size() : 1);
-    text += hint.substr(begin, at - begin);
-    const std::string_view first = rest.substr(at - begin);
-    if (command && !first.starts_with("help") && !first.starts_with("-s "))
+  bool quoted = false;  // a word of ShellWord's, which is taken as it is
+  for (std::size_t at = 0; at < hint.size();) {
+    const std::string_view rest = std::string_view(hint).substr(at);
+    const bool begins = at == 0 || hint[at - 1] == ' ' || hint[at - 1] == '(';
+    std::size_t taken = quoted && rest.starts_with(kEscapedQuote) ? kEscapedQuote.size() : 1;
+    if (!quoted && begins && rest.starts_with(kProgram)) taken = kProgram.size();
+    if (taken == 1 && rest.front() == '\'' && (quoted || begins)) quoted = !quoted;
+    text += rest.substr(0, taken);
+    const std::string_view next = rest.substr(taken);
+    if (taken == kProgram.size() && !next.starts_with("help") && !next.starts_with("-s "))
       text += "-s " + ShellWord(socket) + " ";
+    at += taken;
   }
   return text;
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "cli/client/daemon_process.h"
+#include "cli/client/errors.h"
 #include "cli/client/private_daemon.h"
 #include "cli/client/program.h"
 #include "core/files/output_file.h"
@@ -256,7 +257,8 @@ ExitCode Doctor(Context& context, const Invocation&) {
           fmt::format("{} {:<9}{}",
                       check.good ? out.Paint("ok  ", Style::kGood) : out.Paint("FAIL", Style::kBad),
                       check.name, check.finding));
-      if (!check.next.empty()) out.Line("              try: " + check.next);
+      if (!check.next.empty())
+        out.Line("              try: " + AtSocket(check.next, context.options().socket));
     }
   });
   return answer["ok"] == true ? kOk : kFailed;

@@ -6,12 +6,10 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <string_view>
 #include <system_error>
 
 #include "cli/client/context.h"
 #include "core/files/names.h"
-#include "core/files/shell_word.h"
 
 namespace regrasp::cli {
 namespace {

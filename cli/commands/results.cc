@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -88,11 +87,7 @@ ExitCode PlotRuns(Context& context, const Invocation& invocation) {
     words.insert(words.end(), {"--no-title", ""});
   const std::string out = invocation.Text("output", name + ".png");
   words.insert(words.end(), {"--output", out});
-  if (context.out().format() == Format::kJson) words.push_back("--json");
-  if (context.options().quiet) words.push_back("--quiet");
-  // The hints of the helper name it.
-  if (const std::string& socket = context.options().socket; !socket.empty())
-    words.insert(words.end(), {"--socket", socket});
+  context.AddCommon(&words);
   const ExitCode code = RunHelper(words, out);
   // Of a damaged file the picture is there, too.
   if ((code == kOk || code == kFailed) && invocation.Has("show"))
@@ -148,8 +143,8 @@ ExitCode Plot(Context& context, const Invocation& typed) {
   std::error_code ignored;
   const std::string other = "regrasp plot " + Plain(invocation.params["name"]) + " -o OTHER_FILE";
   fs::path target = invocation.Text("output");
-  if (fs::is_directory(target, ignored)) target /= "picture";  // a name is found for it
-  if (invocation.Has("output") && !to_stdout) CheckTarget(target, other);
+  const bool into = fs::is_directory(target, ignored);
+  if (invocation.Has("output") && !to_stdout) CheckTarget(into ? target / "it" : target, other);
   Invocation request = invocation;
   if (!suffix.empty()) {
     request.params["file"] = Plain(invocation.params["name"]) + suffix;
@@ -162,8 +157,7 @@ ExitCode Plot(Context& context, const Invocation& typed) {
     return kOk;
   }
   if (invocation.Has("output")) {
-    target = invocation.Text("output");
-    if (fs::is_directory(target, ignored)) target /= Plain(At(answer, "file"));
+    if (into) target /= Plain(At(answer, "file"));
     Copy(file, target, other);
     file = target;
     answer["path"] = fs::absolute(target).string();

@@ -78,11 +78,7 @@ ExitCode Run(Context& context, const Invocation& invocation,
     arguments.push_back(invocation.Text(arg.key, "yes"));
   }
   const std::string output = invocation.Text("output", defaults.empty() ? "" : defaults.back());
-  if (context.out().format() == Format::kJson) arguments.push_back("--json");
-  if (context.options().quiet) arguments.push_back("--quiet");
-  // The hints of the helper name it.
-  if (const std::string& socket = context.options().socket; !socket.empty())
-    arguments.insert(arguments.end(), {"--socket", socket});
+  context.AddCommon(&arguments);
   return RunHelper(arguments, output);
 }
 

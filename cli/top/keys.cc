@@ -10,9 +10,19 @@
 
 namespace regrasp::cli {
 
+namespace {
+
+/// What a sensor is like, not how noisy.
+bool IsSensor(std::string_view name) {
+  return name == "taxel_pitch_m" || name == "object_rate_hz" || name == "object_delay_frames";
+}
+
+}  // namespace
+
 Request ChangeNoise(const Json& noise, bool louder) {
   Json levels = Json::object();
   for (const ParamSpec& param : FindMethod("noise.set")->params) {
+    if (IsSensor(param.name)) continue;
     const Json& level = At(noise, std::string(param.name).c_str());
     if (!level.is_number() || level.get<double>() <= 0) continue;
     const double next = level.get<double>() * (louder ? 1.25 : 0.8);

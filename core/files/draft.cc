@@ -145,12 +145,6 @@ void WriteWhole(const std::string& target, std::string_view text, Draft::Existin
 
 void KeepFromOthers() { ::umask(::umask(0) | S_IWGRP | S_IWOTH); }
 
-void RefuseMissingDirectory(const std::string& target) {
-  const fs::path directory = fs::absolute(target).parent_path();
-  if (!fs::is_directory(directory))
-    throw std::runtime_error(directory.string() + " is not a directory");
-}
-
 void RemoveAbandonedDrafts(const std::string& directory) {
   std::error_code error;
   fs::directory_iterator entries(directory.empty() ? "." : directory, error);

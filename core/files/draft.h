@@ -39,10 +39,6 @@ class Draft {
 void WriteWhole(const std::string& target, std::string_view text, Draft::Existing existing,
                 bool durable = true);
 
-/// For files that somebody types the name of: throws std::runtime_error where the directory that
-/// `target` would be in is none, which a Draft would make.
-void RefuseMissingDirectory(const std::string& target);
-
 /// For a program, at its start: nobody but the user may change what it writes (umask 022 at least).
 void KeepFromOthers();
 

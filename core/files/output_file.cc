@@ -38,13 +38,12 @@ void CheckWritable(const std::string& target, Draft::Existing existing) {
   struct stat info {};
   if (existing == Draft::Existing::kKeep && ::lstat(target.c_str(), &info) == 0)
     throw WriteError(target + " exists; give another name");
-  std::string cause;
-  try {
-    if (existing == Draft::Existing::kReplace) RefuseMissingDirectory(target);
-    cause = WhyNoOutput(fs::path(target).parent_path());
-  } catch (const std::runtime_error& error) {
-    cause = error.what();
-  }
+  std::error_code error;
+  const fs::path directory = fs::absolute(target, error).parent_path();
+  const bool made = existing == Draft::Existing::kKeep;  // where it is missing
+  const std::string cause = error || made || fs::is_directory(directory, error)
+                                ? WhyNoOutput(fs::path(target).parent_path())
+                                : directory.string() + " is not a directory";
   if (!cause.empty()) throw WriteError("cannot write " + target + ": " + cause);
 }
 
@@ -52,7 +51,7 @@ std::string WhyNoOutput(const std::string& directory) {
   std::error_code error;
   const fs::path there = ThereOf(fs::absolute(fs::path(directory) / "it", error).parent_path());
   if (error) return "the current directory has gone";
-  if (!fs::is_directory(there, error)) return there.string() + " is no directory";
+  if (!fs::is_directory(there, error)) return there.string() + " is not a directory";
   std::string probe = (there / ".regrasp-XXXXXX").string();
   if (::mkdtemp(probe.data()) != nullptr) {
     ::rmdir(probe.c_str());

@@ -101,26 +101,32 @@ Vector3d TurnAhead(const ControlTick& tick, const LandingPlan::Request& request,
   return std::min(reserve, tick.gait.step_rad) * request.axis_W;
 }
 
-/// Between the last two links of the fingers `i` and `k` [m].
-double GapOfFingers(const HandModel& hand, int i, const FingerPosture& one, int k,
-                    const FingerPosture& two) {
-  const auto all = [](const FingerPosture& finger) {
-    FixedVector<Bone, 5> bones;
-    bones.push_back(finger.tip);
-    for (const Bones* some : {&finger.middle, &finger.body})
-      for (const Bone& bone : *some) bones.push_back(bone);
-    return bones;
-  };
+/// The last two links of a finger.
+struct OuterLinks {
+  FixedVector<Bone, 5> bones;
+  Boxes boxes;
+};
+
+OuterLinks OuterLinksOf(const HandModel& hand, int finger, const FingerPosture& posture) {
+  OuterLinks links;
+  links.bones.push_back(posture.tip);
+  for (const Bones* some : {&posture.middle, &posture.body})
+    for (const Bone& bone : *some) links.bones.push_back(bone);
+  links.boxes = BoxesOf(hand, finger, posture);
+  return links;
+}
+
+/// Between the last two links of two fingers [m].
+double GapOfFingers(const OuterLinks& one, const OuterLinks& two) {
   double gap = 1;
-  for (const Bone& a : all(one))
-    for (const Bone& b : all(two)) gap = std::min(gap, Gap(a, b));
-  const Boxes boxes_one = BoxesOf(hand, i, one), boxes_two = BoxesOf(hand, k, two);
-  for (const PlacedBox& a : boxes_one) {
-    for (const Bone& b : all(two)) gap = std::min(gap, Gap(a, b));
-    for (const PlacedBox& b : boxes_two) gap = std::min(gap, Gap(a, b));
+  for (const Bone& a : one.bones)
+    for (const Bone& b : two.bones) gap = std::min(gap, Gap(a, b));
+  for (const PlacedBox& a : one.boxes) {
+    for (const Bone& b : two.bones) gap = std::min(gap, Gap(a, b));
+    for (const PlacedBox& b : two.boxes) gap = std::min(gap, Gap(a, b));
   }
-  for (const PlacedBox& b : boxes_two)
-    for (const Bone& a : all(one)) gap = std::min(gap, Gap(b, a));
+  for (const PlacedBox& b : two.boxes)
+    for (const Bone& a : one.bones) gap = std::min(gap, Gap(b, a));
   return gap;
 }
 
@@ -186,9 +192,10 @@ double LandingPlan::CheapScore(const ControlTick& tick, const FingerPosture& the
   if (facing > tick.exploration.least_facing)
     score -= penalty * (facing - tick.exploration.least_facing);
   double gap = clearance;
+  const OuterLinks mine = OuterLinksOf(hand, finger, there);
   for (int i : tick.grasp.without(finger)) {
     const FingerPosture other = PostureAt(hand, i, AnglesOf(hand, i, estimate.q));
-    gap = std::min(gap, GapOfFingers(hand, finger, there, i, other));
+    gap = std::min(gap, GapOfFingers(mine, OuterLinksOf(hand, i, other)));
   }
   if (gap < clearance) score -= penalty * std::min(kMostNear, (clearance - gap) / kNearPenalty);
   landing->blocked = gap < -tick.gait.landing_overlap;

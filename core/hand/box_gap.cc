@@ -23,15 +23,8 @@ Boxes BoxesOf(const HandModel& hand, int finger, const FingerPosture& posture) {
   Boxes boxes;
   const Link& last = hand.links[hand.fingers[finger].tip_link];
   AddBoxes(last, posture.X_WT, &boxes);
-  const JointChain chain = ChainOf(hand, finger);
-  if (chain.size() < 2) return boxes;  // the link before is the palm
-  const Joint& joint = hand.joints[chain[chain.size() - 1]];
-  const std::vector<int>& joints = hand.fingers[finger].joints;
-  const int driven = joint.driver < 0 ? chain[chain.size() - 1] : joint.driver;
-  const double q = posture.q[std::find(joints.begin(), joints.end(), driven) - joints.begin()];
-  const double angle = joint.driver < 0 ? q : joint.ratio * q + joint.offset;
-  const Isometry3d X_PL = joint.X_PJ * Eigen::AngleAxisd(angle, joint.axis_J);
-  AddBoxes(hand.links[joint.parent_link], posture.X_WT * X_PL.inverse(), &boxes);
+  const Link& before = hand.links[hand.joints[last.parent_joint].parent_link];
+  if (before.parent_joint >= 0) AddBoxes(before, posture.X_WM, &boxes);
   return boxes;
 }
 
@@ -55,6 +48,7 @@ double Gap(const PlacedBox& one, const PlacedBox& two) {
 }
 
 double Gap(const PlacedBox& box, const Bone& bone) {
+  if (bone.radius <= 0) return 1;
   const Isometry3d X_BW = box.X_WB.inverse();
   const Vector3d a = X_BW * bone.a_W, way = X_BW * bone.b_W - a;
   const auto distance = [&](double share) {

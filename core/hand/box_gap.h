@@ -13,7 +13,8 @@ struct PlacedBox {
   Vector3d half_extents = Vector3d::Zero();  ///< [m]
 };
 
-/// The boxes among the shapes of the finger's last link and of the link before, at most 8.
+/// The boxes among the shapes of the finger's last link and, unless that is the palm, of the link
+/// before; those beyond eight are left out.
 using Boxes = FixedVector<PlacedBox, 8>;
 Boxes BoxesOf(const HandModel& hand, int finger, const FingerPosture& posture);
 
@@ -21,7 +22,8 @@ Boxes BoxesOf(const HandModel& hand, int finger, const FingerPosture& posture);
 /// edge of each. Negative where they overlap; where corners face each other it is more than that.
 double Gap(const PlacedBox& one, const PlacedBox& two);
 
-/// Between a box and a straight link [m]; where its axis meets the box, minus its radius.
+/// Between a box and a straight link [m]; where its axis meets the box, minus its radius; 1 m where
+/// the link has no shape (radius 0).
 double Gap(const PlacedBox& box, const Bone& bone);
 
 }  // namespace regrasp

@@ -108,8 +108,10 @@ FingerPosture PostureAt(const HandModel& hand, int finger, const FingerVector& q
     const int driven = joint.driver < 0 ? chain[n] : joint.driver;
     const auto column = static_cast<Eigen::Index>(
         std::find(model.joints.begin(), model.joints.end(), driven) - model.joints.begin());
-    if (n > 0 && n + 1 == chain.size())
+    if (n > 0 && n + 1 == chain.size()) {
       posture.middle = LargestOf(hand.links[joint.parent_link], 0, X_WL);
+      posture.X_WM = X_WL;
+    }
     X_WL = X_WL * joint.X_PJ;
     axes.push_back({X_WL.linear() * joint.axis_J, X_WL.translation(), joint.ratio, column});
     const double angle = joint.driver < 0 ? q[column] : joint.ratio * q[column] + joint.offset;

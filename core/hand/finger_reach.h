@@ -29,6 +29,7 @@ struct FingerPosture {
   Bones body, middle;  ///< the largest other shape of its link, and that of the link before
   FingerJacobian J;    ///< of the fingertip centre
   Isometry3d X_WT = Isometry3d::Identity();  ///< of the tip link
+  Isometry3d X_WM = Isometry3d::Identity();  ///< of the link before, where it is not the palm
 };
 
 /// All joints between palm and tip link, coupled ones too, root to tip.

@@ -55,7 +55,7 @@ class Doctor(Case):
         # Where nobody has named one, the hand moves, and status warns.
         self.addCleanup(self.regrasp, "down")
         up = self.expect(0, "up", "--speed", "max", "--models-dir", SOURCE / "models", env=environment(XDG_STATE_HOME=f"{self.dir}/file/state"))
-        self.assertIn(f"warning: output_dir {self.dir}/file/state/regrasp: {self.dir}/file is no directory", up.stdout)
+        self.assertIn(f"warning: output_dir {self.dir}/file/state/regrasp: {self.dir}/file is not a directory", up.stdout)
         self.assertEqual(len(self.json("status")["warnings"]), 1)
         # It is the daemon's directory that counts, whatever this one's would be.
         self.assertIn(f"{self.dir}/file/state", self.check("output", HOME=str(self.dir))["finding"])

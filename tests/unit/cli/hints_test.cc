@@ -10,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "cli/client/errors.h"
 #include "cli/grammar/grammar.h"
 #include "cli/shell/words.h"
 
@@ -107,6 +108,15 @@ TEST(Hints, AreCommandsThatTheParserTakes) {
     }
   }
   EXPECT_GT(parsed, 90);  // they are found at all
+}
+
+TEST(Hints, NameTheSocketThatWasNamed) {
+  EXPECT_EQ(AtSocket("regrasp down, then regrasp up    (regrasp doctor)", "/s"),
+            "regrasp -s /s down, then regrasp -s /s up    (regrasp -s /s doctor)");
+  EXPECT_EQ(AtSocket("regrasp help up", "/s"), "regrasp help up");
+  EXPECT_EQ(AtSocket("regrasp up", ""), "regrasp up");
+  const std::string word = "'my regrasp runs/it'\\''s regrasp 1.mcap' (regrasp's)";
+  EXPECT_EQ(AtSocket("regrasp replay " + word, "a b"), "regrasp -s 'a b' replay " + word);
 }
 
 TEST(Hints, AWrongOneIsRefused) {

@@ -304,6 +304,9 @@ TEST(TopKeys, NoiseStaysInsideTheWiresLimits) {
   Json noise = {{"preset", "paper"}, {"position_m", 0.001}, {"force_n", 0.0}};
   EXPECT_EQ(ChangeNoise(noise, true).params, (Json{{"position_m", 0.00125}}));
   EXPECT_EQ(ChangeNoise(noise, false).params, (Json{{"position_m", 0.0008}}));
+  Json taxel = noise;
+  taxel.update({{"taxel_pitch_m", 0.003}, {"object_rate_hz", 15.0}, {"object_delay_frames", 1}});
+  EXPECT_EQ(ChangeNoise(taxel, true).params, ChangeNoise(noise, true).params);
   const double most = FindParam(*FindMethod("noise.set"), "position_m")->max;
   for (int i = 0; i < 100; ++i) noise["position_m"] = ChangeNoise(noise, true).params["position_m"];
   EXPECT_EQ(noise["position_m"], most);
