@@ -116,7 +116,7 @@ void PrintNoise(Output& out, const Json& noise) {
   };
   more("taxels apart", "taxel_pitch_m", 2, 1e3, "mm");
   more("pose rate", "object_rate_hz", 0, 1, "Hz");
-  if (At(noise, "object_rate_hz") != 0.0) more("pose delay", "object_delay_frames", 0, 1, "poses");
+  more("pose delay", "object_delay_frames", 0, 1, "poses");
   more("position bias", "position_bias_m", 2, 1e3, "mm");
   more("force bias", "force_bias_n", 3, 1, "N");
   more("joint bias", "joint_bias_rad", 2, kDegrees, "deg");

@@ -44,8 +44,7 @@ struct ContactEnd {
 /// finger, or on the edge of something.
 struct WeakFinger {
   int finger = -1;
-  double force =
-      0;  ///< on the object, noise-free, mean of the last half second before the onset [N]
+  double force = 0;  ///< on the object, noise-free, mean of 0.5 to 0.1 s before the onset [N]
   double asked = 0;  ///< the same of what control asked for [N]
 };
 

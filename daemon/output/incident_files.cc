@@ -80,6 +80,8 @@ Json SamplesJson(const Incident& incident, const HandModel& hand) {
       finger["force_n"].push_back(f.force);
       finger["true_contact"].push_back(f.true_contact);
       finger["true_force_n"].push_back(-f.true_force_W.dot(f.true_normal_W));
+      finger["true_force_norm_n"].push_back(f.true_force_W.norm());
+      finger["asked_n"].push_back(f.f_command_W.norm());
       finger["load_margin_without_n"].push_back(f.load_margin_without);
       finger["manipulability"].push_back(f.manipulability);
       finger["joint_limit_margin_rad"].push_back(f.joint_limit_margin);

@@ -216,6 +216,7 @@ Outcome NoiseSet(Service& service, const Params& params, Client&) {
                                 "give object_rate_hz, too",
                                 "object_delay_frames",
                                 {}});
+  if (levels.object_rate_hz == 0) levels.object_delay_frames = 0;  // it delays nothing
   const double sample_s = SampleTime(service.dt());
   if (const double gap = params.Number("dropout_gap_s", 0); gap > 0 && gap < sample_s)
     throw RpcException(

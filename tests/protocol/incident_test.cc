@@ -91,8 +91,9 @@ TEST_F(Incidents, TellWhatLedToADrop) {
     }
   }
   for (const auto& [finger, columns] : samples["fingers"].items())
-    for (const char* name : {"role", "in_contact", "force_n", "true_contact", "true_force_n",
-                             "load_margin_without_n", "manipulability", "joint_limit_margin_rad"})
+    for (const char* name :
+         {"role", "in_contact", "force_n", "true_contact", "true_force_n", "true_force_norm_n",
+          "asked_n", "load_margin_without_n", "manipulability", "joint_limit_margin_rad"})
       EXPECT_EQ(columns[name].size(), count) << finger << " " << name;
 
   // What it says follows from the samples.

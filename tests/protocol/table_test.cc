@@ -13,6 +13,7 @@
 #include "core/protocol/methods.h"
 #include "core/protocol/socket_path.h"
 #include "core/sensing/noise.h"
+#include "core/sensing/sensors.h"
 #include "core/session/command.h"
 #include "daemon/pages/protocol_page.h"
 #include "daemon/requests/service.h"
@@ -52,6 +53,10 @@ TEST(MethodTable, IsComplete) {
     }
   }
   EXPECT_EQ(FindMethod("statu"), nullptr);
+}
+
+TEST(MethodTable, KnowsTheLongestPoseDelay) {
+  EXPECT_EQ(FindParam(*FindMethod("noise.set"), "object_delay_frames")->max, kMaxPoseDelay);
 }
 
 TEST(MethodTable, KnowsTheNoisePresets) {
