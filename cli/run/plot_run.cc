@@ -86,7 +86,10 @@ Pictured Execute(const std::string& path, double dt, std::int64_t from, std::int
   result.input.options.changed = ChangedText(replay.session().parameters(), model);
   if (!window.note().empty()) result.notes.push_back(window.note());
   result.complete = window.file().complete;
-  result.lost = window.Losses(replay.session().tick());
+  // The last frame is that after the job's end, up to a step later.
+  const JobRecord& job = result.input.frames.back().job;
+  result.lost =
+      window.Losses(one_job && job.end_tick > from ? job.end_tick : replay.session().tick());
   if (!result.complete) result.notes.push_back(WithoutEndText(Name(path)));
   for (const McapLoss& loss : result.lost)
     result.notes.push_back(fmt::format("{} lost {}", Name(path), LossText(loss)));
