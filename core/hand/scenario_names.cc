@@ -24,6 +24,8 @@ std::string NoSuch(const char* kind, const std::string& name, const Names& names
                      OrNearest(name, names), kind, fmt::join(names, ", "));
 }
 
+/// What a scenario names, against the URDF: locked and coupled joints first, as they decide which
+/// joints drive a finger.
 class NameCheck {
  public:
   NameCheck(const TomlFile& file, UrdfFile urdf)

@@ -89,7 +89,8 @@ int Contacts(const CollisionPart& a, const CollisionPart& b, dContactGeom* out) 
   const int wanted = a.box && b.box ? kMaxPerPair : 1;
   dContactGeom found[8];
   // Built without thread-local storage, as Debian has it, ODE has one workspace for meshes in all
-  // threads. The daemon collides in one only: nobody waits there.
+  // threads. Of the daemon's only the control loop collides meshes (links have none): it never
+  // waits.
   static std::mutex workspace;
   std::unique_lock lock(workspace, std::defer_lock);
   if (dGeomGetClass(a.geom) == dTriMeshClass || dGeomGetClass(b.geom) == dTriMeshClass) lock.lock();
